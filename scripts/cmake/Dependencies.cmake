@@ -1,0 +1,20 @@
+# Header-only libraries of Debian are reached through a private folder of links: /usr/include itself must never be on
+# Emscripten's include path, or glibc's headers leak in.
+set(VITRUVIAN_HEADERS ${CMAKE_BINARY_DIR}/third_party)
+file(MAKE_DIRECTORY ${VITRUVIAN_HEADERS})
+foreach(header eigen3/Eigen nanoflann.hpp tiny_gltf.h nlohmann CLI fast_float stb)
+  get_filename_component(name ${header} NAME)
+  if(NOT EXISTS /usr/include/${header})
+    message(FATAL_ERROR "/usr/include/${header} is missing: install the packages listed in scripts/packages.txt")
+  endif()
+  file(CREATE_LINK /usr/include/${header} ${VITRUVIAN_HEADERS}/${name} SYMBOLIC)
+endforeach()
+
+add_library(third_party INTERFACE)
+target_include_directories(third_party SYSTEM INTERFACE ${VITRUVIAN_HEADERS})
+if(EMSCRIPTEN)
+  target_include_directories(third_party BEFORE INTERFACE ${CMAKE_SOURCE_DIR}/wasm/shim)
+else()
+  find_package(Threads REQUIRED)
+  target_link_libraries(third_party INTERFACE Threads::Threads)
+endif()
