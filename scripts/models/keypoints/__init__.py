@@ -1,0 +1,1 @@
+"""Conversion of the BlazePose networks from TFLite to ONNX."""
