@@ -20,24 +20,25 @@ struct ShapePrior {
   Eigen::MatrixXd precision;  ///< K x K, symmetric positive definite
 };
 
-/// A body model of the SMPL form (Loper et al. 2015): template + linear shape + pose correctives, joints from a linear
-/// regressor, linear blend skinning. Metres, Y up, facing +Z, left hand on +X. Sizes are free: V vertices, J joints,
-/// K shape components, S skinning weights a vertex.
+/// A body model of the SMPL form (Loper et al. 2015): template + linear shape + pose correctives, joints from
+/// a linear regressor, linear blend skinning. Metres, Y up, facing +Z, left hand on +X. Sizes are free: V
+/// vertices, J joints, K shape components, S skinning weights a vertex.
 struct BodyModel {
   std::string name;
-  std::string family;  ///< "vitruvian", later "smpl" ...
-  std::string sha256;  ///< of the file it was read from
-  Points3f v_template;            ///< 3 x V
-  Eigen::MatrixXf shapedirs;      ///< (3V) x K; row 3v + c
-  Faces faces;                    ///< 3 x F
-  std::vector<int> parent;        ///< J; the root's is -1, every other's is smaller than the joint itself
+  std::string family;         ///< "vitruvian", later "smpl" ...
+  std::string sha256;         ///< of the file it was read from
+  Points3f v_template;        ///< 3 x V
+  Eigen::MatrixXf shapedirs;  ///< (3V) x K; row 3v + c
+  Faces faces;                ///< 3 x F
+  std::vector<int> parent;    ///< J; the root's is -1, every other's is smaller than the joint itself
   std::vector<std::string> joint_names;  ///< J
-  Eigen::MatrixXi skin_joint;     ///< S x V joint indices
-  Eigen::MatrixXf skin_weight;    ///< S x V, descending, each column sums to 1; 0 beyond the last weight
-  /// Pose correctives in sparse blocks: vertex v moves by the sum over its blocks of D * vec(R_joint - I), rest frame,
-  /// before skinning; vec is row-major as in SMPL. Blocks of vertex v: [corrective_begin[v], corrective_begin[v + 1]).
-  std::vector<int> corrective_begin;  ///< V + 1
-  std::vector<int> corrective_joint;  ///< B, never the root
+  Eigen::MatrixXi skin_joint;            ///< S x V joint indices
+  Eigen::MatrixXf skin_weight;  ///< S x V, descending, each column sums to 1; 0 beyond the last weight
+  /// Pose correctives in sparse blocks: vertex v moves by the sum over its blocks of D * vec(R_joint - I),
+  /// rest frame, before skinning; vec is row-major as in SMPL. Blocks of vertex v: [corrective_begin[v],
+  /// corrective_begin[v + 1]).
+  std::vector<int> corrective_begin;                   ///< V + 1
+  std::vector<int> corrective_joint;                   ///< B, never the root
   std::vector<Eigen::Matrix<float, 3, 9>> corrective;  ///< B
   /// Joint regressor as triplets, weights of one joint sum to 1.
   struct RegressorEntry {
@@ -47,8 +48,8 @@ struct BodyModel {
   };
   std::vector<RegressorEntry> regressor;
   std::vector<std::uint8_t> segment;  ///< V, 0..23, contract order
-  std::vector<int> mirror;            ///< V, left-right partner of each vertex; empty when the mesh is not symmetric
-  std::array<ShapePrior, 3> priors;   ///< by Gender
+  std::vector<int> mirror;  ///< V, left-right partner of each vertex; empty when the mesh is not symmetric
+  std::array<ShapePrior, 3> priors;  ///< by Gender
 
   // Derived by finish_model().
   Points3d joint_template;          ///< 3 x J, joints of the mean shape

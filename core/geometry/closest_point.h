@@ -13,8 +13,8 @@ struct SurfacePoint {
   float distance = 0;
 };
 
-/// Exact closest point on a triangle mesh by a bounding volume hierarchy. Keeps its own copy of the triangles. Queries
-/// are const and may run in parallel.
+/// Exact closest point on a triangle mesh by a bounding volume hierarchy. Keeps its own copy of the
+/// triangles. Queries are const and may run in parallel.
 class ClosestPointOnMesh {
  public:
   ClosestPointOnMesh(const Points3f& vertices, const Faces& faces);

@@ -13,8 +13,9 @@ struct Neighbour {
   float squared_distance = 0;
 };
 
-/// Exact nearest neighbours among 3-D points, or among 6-D points (position, normal * lambda) as used to keep the two
-/// sides of a thin part apart. Copies what it is built from. Queries are const and may run in parallel.
+/// Exact nearest neighbours among 3-D points, or among 6-D points (position, normal * lambda) as used to keep
+/// the two sides of a thin part apart. Copies what it is built from. Queries are const and may run in
+/// parallel.
 class KdTree {
  public:
   KdTree() = default;
@@ -29,7 +30,8 @@ class KdTree {
   bool empty() const noexcept;
   int dimension() const noexcept;
 
-  /// Nearest point; the tree must not be empty. In a 3-D tree the normal is ignored. Distance in the tree's metric.
+  /// Nearest point; the tree must not be empty. In a 3-D tree the normal is ignored. Distance in the tree's
+  /// metric.
   Neighbour nearest(const Vec3f& point, const Vec3f& normal = Vec3f::Zero()) const;
   /// The `count` nearest points of a 3-D tree (fewer if there are fewer), nearest first.
   void nearest(const Vec3f& point, int count, std::vector<Neighbour>& result) const;

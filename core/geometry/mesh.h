@@ -7,8 +7,8 @@
 
 namespace vitruvian {
 
-/// Area-weighted vertex normals, unit length; zero for vertices without a face of positive area. Faces counter-clockwise
-/// seen from outside give outward normals.
+/// Area-weighted vertex normals, unit length; zero for vertices without a face of positive area. Faces
+/// counter-clockwise seen from outside give outward normals.
 Points3f vertex_normals(const Points3f& vertices, const Faces& faces);
 
 /// Third of the area of the incident triangles, a vertex.
@@ -17,8 +17,8 @@ Eigen::VectorXf vertex_areas(const Points3f& vertices, const Faces& faces);
 /// Volume enclosed by a closed mesh, signed: positive when faces are counter-clockwise seen from outside.
 double signed_volume(const Points3f& vertices, const Faces& faces);
 
-/// Normals of a bare point cloud: PCA of `neighbours` nearest points, oriented outward by a majority that propagates
-/// from the hull inwards along a minimum spanning tree of the neighbour graph.
+/// Normals of a bare point cloud: PCA of `neighbours` nearest points, oriented outward by a majority that
+/// propagates from the hull inwards along a minimum spanning tree of the neighbour graph.
 Points3f point_cloud_normals(const Points3f& points, int neighbours, const Execution& execution);
 
 /// Points on a surface with normals and the triangle (or point) each came from.
@@ -29,11 +29,12 @@ struct SurfaceSamples {
 };
 
 /// `count` points spread uniformly by area over the triangles (stratified, seeded), normals interpolated.
-SurfaceSamples sample_surface(const Points3f& vertices, const Faces& faces, const Points3f& normals, int count,
-                              std::uint32_t seed);
+SurfaceSamples sample_surface(const Points3f& vertices, const Faces& faces, const Points3f& normals,
+                              int count, std::uint32_t seed);
 
-/// Vertex-clustered copy with about `target_vertices` vertices (cells of one size); degenerate faces dropped. With no
-/// faces, a thinned cloud. `source` maps each new vertex to one of its originals (the one nearest the cell's mean).
+/// Vertex-clustered copy with about `target_vertices` vertices (cells of one size); degenerate faces dropped.
+/// With no faces, a thinned cloud. `source` maps each new vertex to one of its originals (the one nearest the
+/// cell's mean).
 struct DecimatedMesh {
   Points3f vertices;
   Points3f normals;
