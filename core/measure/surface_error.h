@@ -21,13 +21,17 @@ struct SegmentError {
   std::optional<DistanceStatistics> statistics;
 };
 
-/// Both measures of contract.md and the scan's view of the model.
+/// Both measures of contract.md and the scan's view of the model. `all` and `surface_all` pool the vertices
+/// of the segments that have statistics: where nothing was scanned there is nothing to be near to.
 struct SurfaceError {
-  std::vector<SegmentError> segments;          ///< 24: template vertex to matched scan point (paper, eq. 9's residual)
+  double observed = 0;  ///< share of all vertices with a compatible scan point within 20 mm
+  std::vector<SegmentError>
+      segments;  ///< 24: template vertex to matched scan point (paper, eq. 9's residual)
   DistanceStatistics all;
-  std::vector<SegmentError> surface_segments;  ///< 24: template vertex to the closest point on the scan's triangles
+  std::vector<SegmentError>
+      surface_segments;  ///< 24: template vertex to the closest point on the scan's triangles
   DistanceStatistics surface_all;
-  DistanceStatistics scan_to_model;            ///< scan point to the closest point on the model's surface
+  DistanceStatistics scan_to_model;  ///< scan point to the closest point on the model's surface
 };
 
 }  // namespace vitruvian

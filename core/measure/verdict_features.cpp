@@ -1,0 +1,211 @@
+#include "measure/verdict_features.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+#include <utility>
+
+#include "body/model.h"
+
+namespace vitruvian {
+namespace {
+
+constexpr float kUnexplainedDistance = 0.050f;
+
+// Two-way residuals that called every wrong fit of clothed strangers and a tenth of the right ones; the
+// second pair lies beyond every right fit measured.
+constexpr double kDoubtfulModelToScan = 25, kFailedModelToScan = 60;
+constexpr double kDoubtfulScanToModel = 45, kFailedScanToModel = 150;
+// Right fits of bare bodies stay under 3.0 % opposed normals, of clothed ones under 12 %; residuals tell
+// which it is.
+constexpr double kBareScanToModel = 26, kBareOpposed = 0.033, kClothedOpposed = 0.12;
+constexpr double kDoubtfulUnexplained = 0.05;
+constexpr double kDoubtfulJointExcess = 0.35;   // rad, 20 degrees beyond the limit
+constexpr double kDoubtfulDisagreement = 0.20;  // m, several times the detector's own error
+constexpr double kDoubtfulInside = 0.04;
+constexpr double kLowStature = 1.20, kHighStature = 2.20;  // m, outside of it the unit is in doubt
+
+/// Segments whose pose and size hardly suffer when they are not seen (hair, shoes and clenched fingers hide
+/// them).
+bool is_extremity(std::string_view segment) {
+  return segment.find("hand") != std::string_view::npos || segment.find("toe") != std::string_view::npos;
+}
+
+template <typename... Values>
+std::string text(const char* format, Values... values) {
+  char buffer[256];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string result;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) result += i + 1 == names.size() ? " and " : ", ";
+    result += names[i];
+  }
+  return result;
+}
+
+/// Collects findings; the worst status wins.
+class Findings {
+ public:
+  void add(VerdictStatus status, std::string reason) {
+    verdict_.status = std::max(verdict_.status, status);
+    verdict_.reasons.push_back(std::move(reason));
+  }
+  Verdict take(double confidence) {
+    verdict_.confidence = confidence;
+    return std::move(verdict_);
+  }
+
+ private:
+  Verdict verdict_{VerdictStatus::ok, 0, {}};
+};
+
+void judge_residuals(const VerdictFeatures& f, Findings& findings) {
+  if (f.scan_to_model_p95_mm > kDoubtfulScanToModel) {
+    findings.add(
+        f.scan_to_model_p95_mm > kFailedScanToModel ? VerdictStatus::failed : VerdictStatus::doubtful,
+        text("parts of the scan are not explained by the body: 5 %% of its points lie more than %.0f mm away "
+             "(clothes, hair, another object, or a limb in the wrong place)",
+             f.scan_to_model_p95_mm));
+  } else if (f.unexplained_share > kDoubtfulUnexplained) {
+    findings.add(
+        VerdictStatus::doubtful,
+        text("%.0f %% of the scan's points lie more than 50 mm from the body", 100 * f.unexplained_share));
+  }
+  if (f.model_to_scan_p95_mm > kDoubtfulModelToScan) {
+    findings.add(
+        f.model_to_scan_p95_mm > kFailedModelToScan ? VerdictStatus::failed : VerdictStatus::doubtful,
+        text("parts of the body lie where the scan has no surface: 5 %% of it is more than %.0f mm away",
+             f.model_to_scan_p95_mm));
+  }
+  const bool bare = f.scan_to_model_p95_mm < kBareScanToModel;
+  if (f.opposed_share > (bare ? kBareOpposed : kClothedOpposed)) {
+    findings.add(
+        VerdictStatus::doubtful,
+        text("%.1f %% of the body's surface faces against the scan's: two limbs may be exchanged or a part "
+             "turned back to front",
+             100 * f.opposed_share));
+  }
+}
+
+void judge_coverage(const VerdictFeatures& f, Findings& findings) {
+  std::vector<std::string> major, minor;
+  for (std::size_t s = 0; s < kSegmentNames.size(); ++s) {
+    if (f.observed_share[s] >= kObservedShare) continue;
+    (is_extremity(kSegmentNames[s]) ? minor : major).push_back(plain_name(kSegmentNames[s]));
+  }
+  if (2 * (major.size() + minor.size()) > kSegmentNames.size()) {
+    findings.add(VerdictStatus::failed, text("%d of the 24 body parts do not meet the scan",
+                                             static_cast<int>(major.size() + minor.size())));
+  } else if (!major.empty()) {
+    findings.add(VerdictStatus::doubtful, "hardly seen in the scan, so mostly guessed: " + listed(major));
+  }
+  if (!minor.empty()) findings.add(VerdictStatus::ok, "hardly seen in the scan: " + listed(minor));
+}
+
+void judge_joints(const VerdictFeatures& f, Findings& findings) {
+  std::vector<std::string> beyond, away;
+  for (const JointFinding& joint : f.joint_limit_excess_rad) {
+    if (joint.value > kDoubtfulJointExcess) beyond.push_back(plain_name(joint.joint));
+  }
+  if (!beyond.empty()) {
+    findings.add(VerdictStatus::doubtful, "bent further than bodies usually do: " + listed(beyond));
+  }
+  for (const JointFinding& joint : f.keypoint_disagreement_m) {
+    if (joint.value > kDoubtfulDisagreement) {
+      away.push_back(plain_name(joint.joint) + text(" (%.0f mm)", 1e3 * joint.value));
+    }
+  }
+  if (!away.empty()) {
+    findings.add(VerdictStatus::doubtful,
+                 "the fitted body is far from where the joint was detected: " + listed(away));
+  }
+  if (f.inside_share > kDoubtfulInside) {
+    findings.add(VerdictStatus::doubtful,
+                 text("%.0f %% of the body lies inside another part of it", 100 * f.inside_share));
+  }
+}
+
+/// 1 well below `doubtful`, 1/2 there, 0 far above.
+double trust(double value, double doubtful) { return 1 / (1 + std::pow(std::max(0.0, value) / doubtful, 4)); }
+
+double confidence_of(const VerdictFeatures& f) {
+  double confidence =
+      trust(f.scan_to_model_p95_mm, kDoubtfulScanToModel) *
+      trust(f.model_to_scan_p95_mm, kDoubtfulModelToScan) *
+      trust(f.opposed_share, f.scan_to_model_p95_mm < kBareScanToModel ? kBareOpposed : kClothedOpposed) *
+      trust(f.unexplained_share, kDoubtfulUnexplained) * trust(f.inside_share, kDoubtfulInside);
+  double excess = 0, disagreement = 0, seen = 0;
+  for (const JointFinding& joint : f.joint_limit_excess_rad) excess = std::max(excess, joint.value);
+  for (const JointFinding& joint : f.keypoint_disagreement_m)
+    disagreement = std::max(disagreement, joint.value);
+  for (const double share : f.observed_share) seen += std::min(1.0, share / kObservedShare) / 24;
+  confidence *= trust(excess, kDoubtfulJointExcess) * trust(disagreement, kDoubtfulDisagreement) * seen;
+  return std::clamp(confidence, 0.0, 1.0);
+}
+
+}  // namespace
+
+std::string to_string(VerdictStatus status) {
+  switch (status) {
+    case VerdictStatus::ok:
+      return "ok";
+    case VerdictStatus::doubtful:
+      return "doubtful";
+    case VerdictStatus::failed:
+      return "failed";
+  }
+  return "failed";
+}
+
+std::string plain_name(std::string_view name) {
+  std::string result(name);
+  std::replace(result.begin(), result.end(), '_', ' ');
+  return result;
+}
+
+Verdict failed_verdict(std::string reason) { return {VerdictStatus::failed, 0, {std::move(reason)}}; }
+
+VerdictFeatures features_from(const SurfaceMeasurement& measurement) {
+  VerdictFeatures f;
+  const SurfaceError& error = measurement.error;
+  f.model_to_scan_p95_mm = error.surface_all.p95_mm;
+  f.model_to_scan_mean_mm = error.surface_all.mean_mm;
+  f.scan_to_model_p95_mm = error.scan_to_model.p95_mm;
+  f.scan_to_model_mean_mm = error.scan_to_model.mean_mm;
+  f.opposed_share = measurement.opposed_share;
+  const std::vector<float>& distances = measurement.sampled_distance_m;
+  if (!distances.empty()) {
+    const auto far =
+        std::count_if(distances.begin(), distances.end(), [](float d) { return d > kUnexplainedDistance; });
+    f.unexplained_share = static_cast<double>(far) / static_cast<double>(distances.size());
+  }
+  for (std::size_t s = 0; s < error.surface_segments.size() && s < f.observed_share.size(); ++s) {
+    f.observed_share[s] = error.surface_segments[s].observed;
+  }
+  return f;
+}
+
+Verdict judge(const VerdictFeatures& features) {
+  for (const double number : {features.model_to_scan_p95_mm, features.scan_to_model_p95_mm,
+                              features.opposed_share, features.unexplained_share, features.inside_share}) {
+    if (!std::isfinite(number)) return failed_verdict("the fit did not end in numbers");
+  }
+  Findings findings;
+  judge_residuals(features, findings);
+  judge_coverage(features, findings);
+  judge_joints(features, findings);
+  if (features.stature_m && (*features.stature_m < kLowStature || *features.stature_m > kHighStature)) {
+    findings.add(VerdictStatus::doubtful,
+                 text("the body would be %.2f m tall: the file's unit may be another one (--units)",
+                      *features.stature_m));
+  }
+  for (const std::string& note : features.notes) findings.add(VerdictStatus::ok, note);
+  return findings.take(confidence_of(features));
+}
+
+}  // namespace vitruvian

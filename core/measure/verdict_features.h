@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "measure/surface_error_compute.h"
+#include "measure/verdict.h"
+
+namespace vitruvian {
+
+/// One joint's number that speaks against the fit.
+struct JointFinding {
+  std::string joint;  ///< SMPL name
+  double value = 0;
+};
+
+/// What a verdict is judged from. The defaults speak neither for nor against.
+struct VerdictFeatures {
+  /// 95th percentiles and means of the distances in both directions, mm. Template vertices count only in
+  /// segments that were scanned.
+  double model_to_scan_p95_mm = 0, model_to_scan_mean_mm = 0;
+  double scan_to_model_p95_mm = 0, scan_to_model_mean_mm = 0;
+  double unexplained_share = 0;  ///< share of scan points farther than 50 mm from the model
+  double opposed_share = 0;      ///< share of near pairs with normals against each other
+  std::array<double, 24> observed_share = [] {
+    std::array<double, 24> all_seen;
+    all_seen.fill(1);
+    return all_seen;
+  }();                                               ///< by segment
+  std::vector<JointFinding> joint_limit_excess_rad;  ///< joints beyond their limits, by how much
+  /// Distance between a confidently detected joint and the fitted one, metres.
+  std::vector<JointFinding> keypoint_disagreement_m;
+  double inside_share = 0;  ///< share of template vertices that lie inside another part of the body
+  std::optional<double> stature_m;
+  std::vector<std::string> notes;  ///< ambiguous choices made on the way (units, up), in plain words
+};
+
+/// The features that follow from a surface measurement; the others keep their defaults.
+VerdictFeatures features_from(const SurfaceMeasurement& measurement);
+
+/// Judges a registration. `failed`: the body lies wrong beyond what clothes explain; `doubtful`: someone
+/// should look; `ok` otherwise. Reasons name the body parts; for `ok` they only tell what was guessed or not
+/// seen. Thresholds were measured on fits with known joints (models/README.md): right fits of clothed
+/// strangers reach 54 mm (model to scan) and 132 mm (scan to model) at the 95th percentile, wrong ones begin
+/// at 14 and 18 mm.
+Verdict judge(const VerdictFeatures& features);
+
+/// Verdict of a registration that never reached a fit.
+Verdict failed_verdict(std::string reason);
+
+/// "left_upper_leg" -> "left upper leg".
+std::string plain_name(std::string_view name);
+
+}  // namespace vitruvian
