@@ -80,7 +80,7 @@ struct Execution::Pool {
   std::exception_ptr first_failure;
 };
 
-Execution::Execution(int threads) : threads_(std::max(1, threads)) {
+Execution::Execution(int threads, const Execution* parent) : threads_(std::max(1, threads)), parent_(parent) {
   if (threads_ > 1) pool_ = std::make_unique<Pool>(threads_ - 1);
 }
 

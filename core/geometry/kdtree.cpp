@@ -76,6 +76,7 @@ KdTree::KdTree(const Points3f& points, const Points3f& normals, float lambda, st
   if (count > 0) tree_->six.build();
 }
 
+KdTree::KdTree() = default;
 KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
 KdTree::~KdTree() = default;

@@ -18,7 +18,7 @@ struct Neighbour {
 /// parallel.
 class KdTree {
  public:
-  KdTree() = default;
+  KdTree();
   /// 3-D tree. `subset` picks columns (empty: all); results are indices into `points` in either case.
   explicit KdTree(const Points3f& points, std::span<const int> subset = {});
   /// 6-D tree on (x, lambda n). `normals` has as many columns as `points`.

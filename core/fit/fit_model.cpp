@@ -1,0 +1,48 @@
+#include "fit/fit_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+#include "geometry/mesh.h"
+
+namespace vitruvian {
+namespace {
+
+constexpr std::uint32_t kOrderSeed = 7;
+
+/// Marginal of the prior over its first components: the covariance is cut, not the precision.
+ShapePrior cut(const ShapePrior& prior, int betas) {
+  if (betas == prior.mean.size()) return prior;
+  const Eigen::MatrixXd covariance = prior.precision.inverse();
+  return {prior.mean.head(betas), covariance.topLeftCorner(betas, betas).inverse()};
+}
+
+}  // namespace
+
+FitModel::FitModel(const BodyModel& body_model, const PosePrior& pose_prior, Gender gender, int beta_limit)
+    : body(body_model),
+      prior(pose_prior),
+      betas(beta_limit > 0 ? std::min(beta_limit, body_model.beta_count()) : body_model.beta_count()),
+      groups(body_model) {
+  shape_prior = cut(body.prior(gender), betas);
+  Random random(kOrderSeed);
+  std::vector<std::pair<double, int>> keys(body.vertex_count());
+  for (int v = 0; v < body.vertex_count(); ++v) {
+    // Exponential keys: sampling without replacement, proportional to area (Efraimidis and Spirakis 2006).
+    keys[v] = {-std::log(1 - random.uniform()) / std::max(1e-9f, body.vertex_area[v]), v};
+  }
+  std::sort(keys.begin(), keys.end());
+  order.reserve(keys.size());
+  for (const auto& [key, vertex] : keys) order.push_back(vertex);
+}
+
+void PosedModel::update(const FitModel& model, const BodyState& state) {
+  skeleton = pose_skeleton(model.body, state);
+  shape_vertices(model.body, state.betas, rest);
+  add_correctives(model.body, state, rest);
+  skin_vertices(model.body, skeleton, rest, vertices);
+  normals = vertex_normals(vertices, model.body.faces);
+}
+
+}  // namespace vitruvian

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fit/landmark_fit.h"
+#include "fit/surface_fit.h"
+
+namespace vitruvian {
+
+/// When a fit counts as bad, and how much may be spent on finding a better one. Budgets are counts, not
+/// times, so that a result never depends on the machine's speed.
+struct HypothesisSettings {
+  double bad_scan_to_model_p95 = 0.045;  ///< m
+  double bad_model_to_scan_p95 = 0.025;  ///< m
+  int repair_rounds = 3;
+  int candidates_per_limb = 2;
+  double least_gain = 0.0005;  ///< m of FitScore::total()
+  int refit_budget = 48;       ///< surface fits beyond the first
+};
+
+struct HypothesisResult {
+  BodyState state;
+  FitScore score;
+  bool bad = false;   ///< still over a threshold
+  std::string start;  ///< name of the start that led here, e.g. "landmarks", "legs exchanged"
+  int repairs = 0;    ///< limbs found again
+  int refits = 0;     ///< surface fits beyond the first
+  double runner_up_gap =
+      0;  ///< m, total() of the next best distinct start minus ours; 0 when only one was tried
+};
+
+/// Fits from the landmarks; when the two-way residual is bad, searches limbs anew where scan points stay
+/// unexplained, then tries other starts: the plain triangulation, and landmarks with left and right exchanged
+/// on legs, arms or both.
+/// @param landmarks  swap-aware triangulation; `plain` the other one (may be empty).
+HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
+                                const std::vector<LandmarkTarget>& landmarks,
+                                const std::vector<LandmarkTarget>& plain, const HypothesisSettings& settings,
+                                const Execution& execution);
+
+/// The landmark on the other side of the body, or the landmark itself (nose).
+int mirrored_landmark(int landmark);
+
+}  // namespace vitruvian

@@ -1,0 +1,158 @@
+#include "fit/surface_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vitruvian {
+namespace {
+
+constexpr float kLeastNormalAgreement = 0.3f;
+constexpr double kLandmarkScale = 0.03;
+constexpr double kDamping = 1e-3;
+constexpr double kLargestRotation = 0.4;
+constexpr int kLeastModelTree = 3500;
+
+float robust_weight(float squared_distance, float normal_agreement, float sigma) {
+  if (normal_agreement < kLeastNormalAgreement) return 0;
+  const float g = sigma * sigma / (squared_distance + sigma * sigma);
+  return g * g;
+}
+
+/// Samples of the model matched to the scan.
+[[gnu::noinline]] void match_model(const FitModel& model, const PosedModel& posed, const ScanTarget& scan,
+                                   const KdTree& tree, const FitStage& stage, float sigma,
+                                   std::vector<Correspondence>& matches, const Execution& execution) {
+  matches.resize(std::min<std::size_t>(stage.samples, model.order.size()));
+  execution.parallel_for(static_cast<std::ptrdiff_t>(matches.size()), 256,
+                         [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+                           for (std::ptrdiff_t i = begin; i < end; ++i) {
+                             const int v = model.order[i];
+                             const Vec3f x = posed.vertices.col(v), n = posed.normals.col(v);
+                             const int y = tree.nearest(x, n).index;
+                             const Vec3f error = x - scan.points.col(y);
+                             const Vec3f normal = scan.normals.col(y);
+                             const float weight = robust_weight(error.squaredNorm(), normal.dot(n), sigma);
+                             matches[i] = {v, weight, static_cast<float>(stage.isotropy), normal, error};
+                           }
+                         });
+}
+
+/// Samples of the scan matched to the model.
+[[gnu::noinline]] void match_scan(const PosedModel& posed, const ScanTarget& scan, const KdTree& model_tree,
+                                  const FitStage& stage, float sigma, std::vector<Correspondence>& matches,
+                                  const Execution& execution) {
+  matches.resize(std::min<std::size_t>(stage.samples, scan.points.cols()));
+  execution.parallel_for(
+      static_cast<std::ptrdiff_t>(matches.size()), 256, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        for (std::ptrdiff_t i = begin; i < end; ++i) {
+          const Vec3f y = scan.points.col(i), normal = scan.normals.col(i);
+          const int v = model_tree.nearest(y, normal).index;
+          const Vec3f error = posed.vertices.col(v) - y;
+          const float weight = robust_weight(error.squaredNorm(), normal.dot(posed.normals.col(v)), sigma);
+          matches[i] = {v, weight, static_cast<float>(stage.isotropy), normal, error};
+        }
+      });
+}
+
+KdTree model_tree(const FitModel& model, const PosedModel& posed, const FitStage& stage) {
+  const std::size_t size =
+      std::min<std::size_t>(model.order.size(), std::max(stage.samples, kLeastModelTree));
+  const std::span<const int> subset(model.order.data(), size);
+  return stage.normals_in_search ? KdTree(posed.vertices, posed.normals, ScanTarget::kNormalWeight, subset)
+                                 : KdTree(posed.vertices, subset);
+}
+
+double mean_of(const std::vector<float>& values) {
+  double sum = 0;
+  for (const float value : values) sum += value;
+  return values.empty() ? 0 : sum / static_cast<double>(values.size());
+}
+
+double percentile_95(std::vector<float>& values) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+FitSchedule FitSchedule::full() {
+  return {{{24, 700, 0.10, 0.04, 0.3, 0.03, 1.0, 0.05, 0.03, true},
+           {8, 1500, 0.04, 0.01, 0.3, 0.01, 0.3, 0.02, 0.01, true},
+           {4, 4000, 0.01, 0.005, 0.0, 0.003, 0.1, 0.005, 0.0, false}}};
+}
+
+FitSchedule FitSchedule::after_limb_search() {
+  FitSchedule schedule = full();
+  schedule.stages[0].sigma_begin = 0.08;
+  for (FitStage& stage : schedule.stages) stage.landmarks = 0;
+  return schedule;
+}
+
+void fit_surface(const FitModel& model, const ScanTarget& scan, const FitSchedule& schedule,
+                 std::span<const LandmarkTarget> landmarks, BodyState& state, const Execution& execution) {
+  NormalEquations equations(model);
+  PosedModel posed;
+  std::vector<Correspondence> of_model, of_scan;
+  for (const FitStage& stage : schedule.stages) {
+    const KdTree& tree = stage.normals_in_search ? scan.by_position_and_normal : scan.by_position;
+    for (int i = 0; i < stage.iterations; ++i) {
+      execution.check();
+      posed.update(model, state);
+      const double sigma =
+          stage.sigma_begin * std::pow(stage.sigma_end / stage.sigma_begin,
+                                       static_cast<double>(i) / std::max(1, stage.iterations));
+      match_model(model, posed, scan, tree, stage, static_cast<float>(sigma), of_model, execution);
+      match_scan(posed, scan, model_tree(model, posed, stage), stage, static_cast<float>(sigma), of_scan,
+                 execution);
+      const BodyJacobian<float> jacobian(model.body, model.groups, state, posed.skeleton, posed.rest);
+      equations.clear();
+      const double unit = 1 / (sigma * sigma);
+      equations.add(jacobian, of_model, unit / static_cast<double>(of_model.size()), execution);
+      equations.add(jacobian, of_scan, unit / static_cast<double>(of_scan.size()), execution);
+      if (stage.landmarks > 0 && !landmarks.empty()) {
+        for (const LandmarkTarget& l : landmarks) {
+          const double squared = (landmark_position(posed.skeleton, l) - l.target).squaredNorm();
+          const double robust = 1 / (1 + squared / (4 * kLandmarkScale * kLandmarkScale));
+          equations.add(jacobian, posed, l,
+                        stage.landmarks * robust /
+                            (static_cast<double>(landmarks.size()) * kLandmarkScale * kLandmarkScale));
+        }
+      }
+      equations.add_pose_prior(state, posed, stage.gaussian, stage.limits);
+      equations.add_shape_prior(state, stage.shape);
+      equations.step(posed, kDamping, kLargestRotation, state);
+    }
+  }
+}
+
+FitScore score_fit(const FitModel& model, const ScanTarget& scan, const BodyState& state, int samples) {
+  PosedModel posed;
+  posed.update(model, state);
+  FitScore score;
+  int opposed = 0;
+  std::vector<float> of_model, of_scan;
+  const int model_count = std::min<int>(samples, static_cast<int>(model.order.size()));
+  for (int i = 0; i < model_count; ++i) {
+    const int v = model.order[i];
+    const Neighbour y = scan.by_position.nearest(posed.vertices.col(v));
+    of_model.push_back(std::sqrt(y.squared_distance));
+    opposed += scan.normals.col(y.index).dot(posed.normals.col(v)) < 0;
+  }
+  const KdTree tree(posed.vertices);
+  const int scan_count = std::min<int>(samples, static_cast<int>(scan.points.cols()));
+  for (int i = 0; i < scan_count; ++i) {
+    const Neighbour v = tree.nearest(scan.points.col(i));
+    of_scan.push_back(std::sqrt(v.squared_distance));
+    opposed += scan.normals.col(i).dot(posed.normals.col(v.index)) < 0;
+  }
+  score.model_to_scan = mean_of(of_model);
+  score.scan_to_model = mean_of(of_scan);
+  score.model_to_scan_p95 = percentile_95(of_model);
+  score.scan_to_model_p95 = percentile_95(of_scan);
+  score.opposed_normals = static_cast<double>(opposed) / std::max(1, model_count + scan_count);
+  return score;
+}
+
+}  // namespace vitruvian

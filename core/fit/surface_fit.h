@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "fit/normal_equations.h"
+#include "fit/scan_target.h"
+
+namespace vitruvian {
+
+/// One stage of the annealed fit. Weights multiply dimensionless terms.
+struct FitStage {
+  int iterations;
+  int samples;         ///< points a direction
+  double sigma_begin;  ///< m, robust scale, falls geometrically to sigma_end
+  double sigma_end;
+  double isotropy;         ///< weight of the whole distance beside the distance along the normal
+  double gaussian;         ///< pose prior
+  double limits;           ///< joint limits
+  double shape;            ///< shape prior
+  double landmarks;        ///< landmark term
+  bool normals_in_search;  ///< neighbours by position and normal
+};
+
+struct FitSchedule {
+  std::vector<FitStage> stages;
+  /// From a landmark fit to the surface (measured best; about 36 iterations).
+  static FitSchedule full();
+  /// From a re-posed limb: starts narrower and without landmarks.
+  static FitSchedule after_limb_search();
+};
+
+/// How well a body explains a scan and the scan a body; distances between samples, m.
+struct FitScore {
+  double model_to_scan = 0;  ///< mean
+  double scan_to_model = 0;  ///< mean
+  double model_to_scan_p95 = 0;
+  double scan_to_model_p95 = 0;
+  double opposed_normals = 0;  ///< share of the pairs whose normals point away from each other
+  double total() const { return model_to_scan + scan_to_model; }
+};
+
+/// Annealed Gauss-Newton fit of pose, shape and translation to the scan: point-to-plane in both directions,
+/// robust (Geman-McClure) weights, normal compatibility.
+void fit_surface(const FitModel& model, const ScanTarget& scan, const FitSchedule& schedule,
+                 std::span<const LandmarkTarget> landmarks, BodyState& state, const Execution& execution);
+
+/// Two-way distances over `samples` points a direction.
+FitScore score_fit(const FitModel& model, const ScanTarget& scan, const BodyState& state, int samples = 4000);
+
+}  // namespace vitruvian
