@@ -4,8 +4,8 @@
 
 namespace vitruvian {
 
-ViewLandmarkDetector::ViewLandmarkDetector(std::span<const View> views, const Settings& settings)
-    : views_(views), settings_(settings), landmarks_(views.size()) {
+ViewLandmarkDetector::ViewLandmarkDetector(std::span<const View> views, bool second_pass)
+    : views_(views), second_pass_(second_pass), landmarks_(views.size()) {
   for (std::size_t k = 0; k < views_.size(); ++k) looks_.push_back({k, region_from_silhouette(views_[k])});
 }
 
@@ -26,14 +26,11 @@ void ViewLandmarkDetector::accept(const NetworkReply& reply) {
     LandmarkReading reading = decode_landmarks(reply.outputs[k], look.region);
     if (pass_ == 1) {
       const Region region = region_from_auxiliary(reading.mid_hip, reading.circle_point);
-      if (settings_.second_pass && is_plausible_region(region, look.region, views_[look.view])) {
+      if (second_pass_ && is_plausible_region(region, look.region, views_[look.view])) {
         next.push_back({look.view, region});
       }
     }
-    ViewLandmarks& kept = landmarks_[look.view];
-    const bool first_is_surer =
-        pass_ == 2 && settings_.prefer_presence && kept.body_presence > reading.view.body_presence;
-    if (!first_is_surer) kept = std::move(reading.view);
+    landmarks_[look.view] = std::move(reading.view);
   }
   looks_ = std::move(next);
   ++pass_;

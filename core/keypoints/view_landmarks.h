@@ -19,15 +19,11 @@ namespace vitruvian {
 ///   const std::vector<ViewLandmarks> landmarks = detector.result();
 class ViewLandmarkDetector {
  public:
-  struct Settings {
-    bool second_pass = true;
-    /// Keep the first look where it saw a body with more certainty than the second.
-    bool prefer_presence = false;
-  };
-
-  /// @param views  must outlive the detector; may be empty.
-  explicit ViewLandmarkDetector(std::span<const View> views) : ViewLandmarkDetector(views, Settings()) {}
-  ViewLandmarkDetector(std::span<const View> views, const Settings& settings);
+  /// @param views        must outlive the detector; may be empty.
+  /// @param second_pass  false: one look only, twice as fast, less sure (on 352 views of clothed bodies the
+  /// second
+  ///                     look takes the mean error from 3.7 to 3.3 % of the height).
+  explicit ViewLandmarkDetector(std::span<const View> views, bool second_pass = true);
 
   /// The runs needed next, or nothing when the result is complete. The same request until accept() is called.
   std::optional<NetworkRequest> next_request() const;
@@ -45,7 +41,7 @@ class ViewLandmarkDetector {
   };
 
   std::span<const View> views_;
-  Settings settings_;
+  bool second_pass_;
   int pass_ = 1;
   std::vector<Look> looks_;  // asked for now; empty when complete
   std::vector<ViewLandmarks> landmarks_;

@@ -180,23 +180,11 @@ TEST(ViewLandmarkDetector, LooksTwiceAndKeepsTheSecond) {
   EXPECT_THROW(detector.accept({}), Error);
 }
 
-TEST(ViewLandmarkDetector, MayKeepTheSurerLook) {
-  const std::vector<View> views{make_view(100, 20, 180, 260)};
-  std::vector<Eigen::Vector2f> points(35, Eigen::Vector2f(128, 128));
-  points[34] = {128, 28};
-  for (const bool prefer : {false, true}) {
-    ViewLandmarkDetector detector(views, {true, prefer});
-    detector.accept({{outputs_for(points, 0.9f)}});
-    detector.accept({{outputs_for(points, 0.5f)}});
-    EXPECT_EQ(detector.result()[0].body_presence, prefer ? 0.9f : 0.5f);
-  }
-}
-
 TEST(ViewLandmarkDetector, OneLookAndNoViews) {
   const std::vector<View> views{make_view(100, 20, 180, 260)};
   std::vector<Eigen::Vector2f> points(35, Eigen::Vector2f(128, 128));
   points[34] = {128, 28};
-  ViewLandmarkDetector once(views, {false, false});
+  ViewLandmarkDetector once(views, false);
   once.accept({{outputs_for(points, 0.9f)}});
   EXPECT_FALSE(once.next_request());
   EXPECT_EQ(once.result().size(), 1u);
