@@ -4,7 +4,9 @@ import hashlib
 import json
 import os
 import pathlib
+import subprocess
 import sys
+import tempfile
 import unittest
 
 import numpy as np
@@ -133,6 +135,27 @@ class ParityTest(unittest.TestCase):
 
     def test_detector(self):
         self.run_all("detector", {"scores": 0.005, "boxes": 0.01})
+
+
+class MakerTest(unittest.TestCase):
+    MAKER = ROOT / "scripts" / "models" / "make_keypoint_networks.py"
+
+    def run_maker(self, package, out):
+        return subprocess.run([sys.executable, str(self.MAKER), "--package", str(package), "--out", str(out)],
+                              capture_output=True, text=True, check=False)
+
+    def test_refuses_a_missing_or_changed_package(self):
+        with tempfile.TemporaryDirectory() as folder:
+            package, out = pathlib.Path(folder) / "package", pathlib.Path(folder) / "out"
+            package.mkdir()
+            result = self.run_maker(package, out)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn("pose_landmark_full.tflite: No such file", result.stderr)
+            (package / "pose_landmark_full.tflite").write_bytes(b"TFL3" * 100)
+            result = self.run_maker(package, out)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn("expected e9a5c5cb", result.stderr)
+            self.assertEqual(list(out.iterdir()), [])
 
 
 class TfliteReaderTest(unittest.TestCase):
