@@ -1,0 +1,123 @@
+#include "pipeline/outcome.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "align/frame.h"
+#include "keypoints/left_right.h"
+#include "measure/surface_error_compute.h"
+#include "measure/verdict_features.h"
+
+namespace vitruvian {
+namespace {
+
+constexpr int kRefineSamples = 20000;
+constexpr double kSureKeypoint = 0.5;
+
+Alignment describe_alignment(const OutcomeInput& input) {
+  Alignment alignment;
+  alignment.body_from_scan = input.body_from_scan;
+  alignment.canonical_from_body.topLeftCorner<3, 3>() = canonical_from_body_rotation();
+  alignment.unit = unit_named(input.unit.unit);
+  alignment.metres_per_unit = input.unit.metres_per_unit;
+  const Mat3d rotation = input.body_from_scan.topLeftCorner<3, 3>();
+  alignment.up = nearest_axis(rotation.row(1).transpose());
+  alignment.front = nearest_axis(rotation.row(2).transpose());
+  alignment.method = input.method;
+  return alignment;
+}
+
+std::vector<JointFinding> limit_excess(const BodyModel& body, const PosePrior& prior,
+                                       const BodyState& state) {
+  std::vector<JointFinding> findings;
+  const Points3d pose = state.axis_angle();
+  for (int j = 1; j < body.joint_count() && 3 * j <= prior.limit_low.size(); ++j) {
+    double worst = 0;
+    for (int k = 0; k < 3; ++k) {
+      const int i = 3 * (j - 1) + k;
+      worst = std::max({worst, prior.limit_low[i] - pose(k, j), pose(k, j) - prior.limit_high[i]});
+    }
+    if (worst > 0) findings.push_back({body.joint_names[j], worst});
+  }
+  return findings;
+}
+
+std::vector<JointFinding> keypoint_disagreement(const std::vector<LandmarkTarget>& targets,
+                                                const BodyModel& body, const Skeleton& skeleton) {
+  std::vector<JointFinding> findings;
+  for (const LandmarkTarget& l : targets) {
+    if (l.weight < kSureKeypoint) continue;
+    findings.push_back({body.joint_names[l.joint], (landmark_position(skeleton, l) - l.target).norm()});
+  }
+  return findings;
+}
+
+Points3d scan_from_body(const OutcomeInput& input, const Points3d& body_points) {
+  const Mat4d inverse = input.body_from_scan.inverse();
+  return (inverse.topLeftCorner<3, 3>() * body_points).colwise() + inverse.topRightCorner<3, 1>();
+}
+
+}  // namespace
+
+double standing_stature(const BodyModel& body, const Eigen::VectorXd& betas) {
+  VertexMatrix<float> rest;
+  shape_vertices(body, betas, rest);
+  return rest.row(1).maxCoeff() - rest.row(1).minCoeff();
+}
+
+Unit unit_named(const std::string& name) {
+  for (const Unit unit : {Unit::metre, Unit::centimetre, Unit::millimetre, Unit::inch}) {
+    if (to_string(unit) == name) return unit;
+  }
+  return Unit::automatic;
+}
+
+Registration make_outcome(const OutcomeInput& input, const Execution& execution) {
+  const BodyModel& body = input.models.body;
+  const PlacedScan placed(input.scan, input.body_from_scan, execution);
+  const ScanSurface surface = placed.surface();
+  const ScanTarget samples = ScanTarget::sample(placed.points(), input.scan.scan.faces, placed.normals(),
+                                                kRefineSamples, input.settings.seed + 17);
+  BodyState state = input.fit.state;
+  refine_fit(input.fit_model, surface, samples, RefineSettings(), state, execution);
+
+  // The result is what the double-precision forward model says, so that it can be rebuilt from the
+  // parameters.
+  const Points3d vertices = posed_vertices<double>(body, state);
+  const Points3f vertices_float = vertices.cast<float>();
+  const Points3f normals = vertex_normals(vertices_float, body.faces);
+  const SurfaceMeasurement measured =
+      measure_surface({vertices_float, normals, body.faces, body.segment}, surface, execution);
+
+  const Skeleton skeleton = pose_skeleton(body, state);
+  VerdictFeatures features = features_from(measured);
+  features.joint_limit_excess_rad = limit_excess(body, input.models.prior, state);
+  features.keypoint_disagreement_m = keypoint_disagreement(
+      landmark_targets(input.models.landmarks, input.landmarks.swap_aware), body, skeleton);
+  features.stature_m = standing_stature(body, state.betas);
+  if (!input.unit_note.empty()) features.notes.push_back(input.unit_note);
+
+  Registration result;
+  const Scan& scan = input.scan.scan;
+  result.scan = {scan.file_name, scan.sha256, static_cast<long>(scan.vertices.cols()),
+                 static_cast<long>(scan.faces.cols())};
+  result.model = {body.name,           body.family,       body.sha256,           input.settings.gender,
+                  body.vertex_count(), body.face_count(), input.fit_model.betas, body.joint_count()};
+  result.alignment = describe_alignment(input);
+  result.keypoints = smpl_keypoints(input.landmarks.swap_aware);
+  result.parameters = BodyParameters{state.betas, state.axis_angle(), state.translation};
+  const Points3d joints_scan = scan_from_body(input, skeleton.joints);
+  for (int j = 0; j < body.joint_count(); ++j) {
+    result.joints.push_back({body.joint_names[j], skeleton.joints.col(j), joints_scan.col(j)});
+  }
+  result.surface_error = measured.error;
+  result.verdict = judge(features);
+  result.settings = input.settings;
+  result.registered_vertices = scan_from_body(input, vertices);
+  result.registered_faces = body.faces;
+  for (const float distance : measured.surface_distance_m) result.vertex_error_mm.push_back(1000 * distance);
+  return result;
+}
+
+}  // namespace vitruvian

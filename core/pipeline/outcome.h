@@ -1,0 +1,38 @@
+#pragma once
+
+#include "align/units.h"
+#include "fit/hypotheses.h"
+#include "fit/refine.h"
+#include "pipeline/landmark_stage.h"
+#include "pipeline/models.h"
+#include "pipeline/prepared_scan.h"
+#include "pipeline/registration.h"
+
+namespace vitruvian {
+
+/// A fitted scan, ready for its last stages.
+struct OutcomeInput {
+  const Models& models;
+  const FitModel& fit_model;
+  const Settings& settings;
+  const PreparedScan& scan;
+  const Mat4d& body_from_scan;
+  const HypothesisResult& fit;
+  const SeenLandmarks& landmarks;  ///< body frame
+  UnitCandidate unit;
+  std::string unit_note;
+  std::string method;
+  double stature = 0;
+};
+
+/// Refines the fit on the whole scan, measures it, judges it, and puts the result together in the scan's
+/// frame.
+Registration make_outcome(const OutcomeInput& input, const Execution& execution);
+
+/// Height of the body with these betas in its rest pose, m.
+double standing_stature(const BodyModel& body, const Eigen::VectorXd& betas);
+
+/// Unit by its short name ("m", "cm", "mm", "in").
+Unit unit_named(const std::string& name);
+
+}  // namespace vitruvian

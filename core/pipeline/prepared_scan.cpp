@@ -1,0 +1,79 @@
+#include "pipeline/prepared_scan.h"
+
+#include <cmath>
+
+namespace vitruvian {
+namespace {
+
+constexpr int kCoarseVertices = 40000;
+constexpr int kCloudNeighbours = 12;
+constexpr Index kLargestCloudForNormals = 150000;
+
+/// Normals of a cloud: of a thinned copy when it is large, each point then takes those of its nearest sample.
+Points3f cloud_normals(const Points3f& points, const Execution& execution) {
+  if (points.cols() <= kLargestCloudForNormals)
+    return point_cloud_normals(points, kCloudNeighbours, execution);
+  const DecimatedMesh thin =
+      cluster_decimate(points, Points3f::Zero(3, points.cols()), Faces(3, 0), kLargestCloudForNormals);
+  const Points3f thin_normals = point_cloud_normals(thin.vertices, kCloudNeighbours, execution);
+  const KdTree tree(thin.vertices);
+  Points3f normals(3, points.cols());
+  execution.parallel_for(points.cols(), 4096, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      normals.col(i) = thin_normals.col(tree.nearest(points.col(i)).index);
+  });
+  return normals;
+}
+
+Points3f initial_normals(const Scan& scan, const Execution& execution) {
+  if (scan.faces.cols() > 0) return vertex_normals(scan.vertices, scan.faces);
+  if (scan.normals.cols() == scan.vertices.cols()) return scan.normals.colwise().normalized();
+  return cloud_normals(scan.vertices, execution);
+}
+
+}  // namespace
+
+PreparedScan::PreparedScan(Scan given, const Execution& execution) : scan(std::move(given)) {
+  normals = initial_normals(scan, execution);
+  execution.progress("align", 0.2);
+  DecimatedMesh coarse = cluster_decimate(scan.vertices, normals, scan.faces, kCoarseVertices);
+  // A million scattered points share hardly a triangle after clustering: then the vertices alone are the
+  // surface.
+  if (scan.faces.cols() > 0 && coarse.faces.cols() < coarse.vertices.cols() / 2) coarse.faces.resize(3, 0);
+  const std::vector<int> source = coarse.source;
+  surface = prepare_surface(std::move(coarse.vertices), std::move(coarse.faces), std::move(coarse.normals),
+                            execution);
+  // prepare_surface() found out which side is outside; turn our normals when most of them disagree.
+  double agreement = 0;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    agreement += normals.col(source[i]).dot(surface.normals.col(static_cast<Index>(i))) > 0 ? 1 : -1;
+  }
+  if (agreement < 0) normals *= -1;
+  centroid = scan.origin + surface.vertices.cast<double>().rowwise().mean();
+}
+
+Points3f transform_points(const Points3f& points, const Vec3d& origin, const Mat4d& body_from_scan) {
+  const Mat3f linear = body_from_scan.topLeftCorner<3, 3>().cast<float>();
+  const Vec3f shift =
+      (body_from_scan.topLeftCorner<3, 3>() * origin + body_from_scan.topRightCorner<3, 1>()).cast<float>();
+  Points3f result(3, points.cols());
+  result.noalias() = linear * points;
+  result.colwise() += shift;
+  return result;
+}
+
+PlacedScan::PlacedScan(const PreparedScan& prepared, const Mat4d& body_from_scan, const Execution& execution)
+    : faces_(&prepared.scan.faces) {
+  points_ = transform_points(prepared.scan.vertices, prepared.scan.origin, body_from_scan);
+  const Mat3d linear = body_from_scan.topLeftCorner<3, 3>();
+  const Mat3f rotation = (linear / std::cbrt(linear.determinant())).cast<float>();
+  normals_.noalias() = rotation * prepared.normals;
+  execution.parallel_for(2, 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t job = begin; job < end; ++job) {
+      if (job == 0) tree_ = KdTree(points_);
+      if (job == 1 && faces_->cols() > 0) mesh_.emplace(points_, *faces_);
+    }
+  });
+}
+
+}  // namespace vitruvian

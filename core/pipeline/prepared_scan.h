@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "fit/scan_target.h"
+#include "geometry/mesh.h"
+#include "geometry/scan_surface.h"
+#include "io/scan.h"
+#include "keypoints/views.h"
+
+namespace vitruvian {
+
+/// A scan in its file's frame and units (relative to scan.origin), with what does not depend on how it is
+/// aligned.
+struct PreparedScan {
+  Scan scan;
+  Points3f normals;     ///< unit, outward
+  ViewSurface surface;  ///< coarse copy for pictures, file units
+  Vec3d centroid;       ///< scan frame: mean of the coarse copy's vertices
+
+  PreparedScan(Scan scan, const Execution& execution);
+};
+
+/// A scan placed in the body frame, metres, with its search structures.
+class PlacedScan {
+ public:
+  /// @param body_from_scan  similarity; @param prepared must outlive this object.
+  PlacedScan(const PreparedScan& prepared, const Mat4d& body_from_scan, const Execution& execution);
+
+  const Points3f& points() const { return points_; }
+  const Points3f& normals() const { return normals_; }
+  ScanSurface surface() const { return {points_, normals_, *faces_, tree_, mesh_ ? &*mesh_ : nullptr}; }
+
+ private:
+  Points3f points_, normals_;
+  const Faces* faces_;
+  KdTree tree_;
+  std::optional<ClosestPointOnMesh> mesh_;
+};
+
+/// Points given relative to `origin` in the scan frame, taken to the body frame.
+Points3f transform_points(const Points3f& points, const Vec3d& origin, const Mat4d& body_from_scan);
+
+}  // namespace vitruvian
