@@ -170,14 +170,10 @@ def _chains_to_left_corner(loop, vertices):
     return chain(-1), chain(1)
 
 
-def closed_skin(vertices, quads):
-    """The skin without mouth and eye cavities, closed, triangulated, exactly symmetric.
-
-    vertices [N,3] symmetric shape that decides cuts and diagonals. Returns (faces [F,3] indexing into `kept`,
-    kept [V] indices into vertices).
-    """
+def opened_and_capped(vertices, quads):
+    """(quads without mouth and eye cavities, triangles [C,3] that close the three openings)."""
     dropped = np.zeros(len(quads), bool)
-    triangles = []
+    caps = []
     partner = mirror_partners(vertices)
     for loop, inner in _cavities(vertices, quads):
         dropped[inner] = True
@@ -186,15 +182,22 @@ def closed_skin(vertices, quads):
         # The cap's winding: each edge of the loop runs against the kept quad beside it.
         kept_edges = set(map(tuple, half_edges(np.delete(quads, inner, 0)).tolist()))
         outward = loop if (loop[1], loop[0]) in kept_edges else loop[::-1]
-        caps = _zipped(*_chains_to_left_corner(outward, vertices), vertices)
-        triangles += caps + [partner[t[::-1]].tolist() for t in caps]
-    q = quads[~dropped]
+        half = _zipped(*_chains_to_left_corner(outward, vertices), vertices)
+        caps += half + [partner[t[::-1]].tolist() for t in half]
+    return quads[~dropped], np.array(caps)
+
+
+def closed_skin(vertices, quads):
+    """The skin without mouth and eye cavities, closed, triangulated, exactly symmetric.
+
+    vertices [N,3] symmetric shape that decides cuts and diagonals. Returns (faces [F,3] indexing into `kept`,
+    kept [V] indices into vertices).
+    """
+    q, caps = opened_and_capped(vertices, quads)
     short = np.linalg.norm(vertices[q[:, 0]] - vertices[q[:, 2]], axis=1) <= 1e-9 + np.linalg.norm(
         vertices[q[:, 1]] - vertices[q[:, 3]], axis=1
     )
-    triangles = np.concatenate(
-        [q[short][:, [0, 1, 2]], q[short][:, [0, 2, 3]], q[~short][:, [0, 1, 3]], q[~short][:, [1, 2, 3]],
-         np.array(triangles)]
-    )  # fmt: skip
-    kept, faces = np.unique(triangles, return_inverse=True)
+    first = np.concatenate([q[short][:, [0, 1, 2]], q[~short][:, [0, 1, 3]]])
+    second = np.concatenate([q[short][:, [0, 2, 3]], q[~short][:, [1, 2, 3]]])
+    kept, faces = np.unique(np.concatenate([first, second, caps]), return_inverse=True)
     return faces.reshape(-1, 3), kept
