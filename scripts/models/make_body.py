@@ -170,7 +170,6 @@ def make_body(package, log):
         "package": f"{NAME} {VERSION}",
         "package_sha256": TARBALL_SHA256,
         "maker_version": MAKER_VERSION,
-        "licence": "CC0-1.0",
     }
     return packed(body, template, metadata), report
 

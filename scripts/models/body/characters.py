@@ -7,7 +7,7 @@ from .surface import mirror_partners
 DENSITY = 985.0  # kg/m^3, whole body
 # Population (US and European surveys, rounded): mean and standard deviation of stature in metres, median and
 # logarithmic deviation of the body mass index in kg/m^2.
-STATURE = {"female": (1.625, 0.070), "male": (1.755, 0.074)}
+STATURE = {"female": (1.625, 0.072), "male": (1.755, 0.076)}
 STATURE_RANGE = (1.40, 2.10)
 BMI = {"female": (25.8, 0.20), "male": (26.3, 0.175)}
 BMI_RANGE = (16.5, 43.0)
