@@ -1,5 +1,6 @@
 #include "fit/fit_model.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include "fit/landmark_fit.h"
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 
 namespace vitruvian {

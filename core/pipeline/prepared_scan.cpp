@@ -1,5 +1,6 @@
 #include "pipeline/prepared_scan.h"
 
+#include <Eigen/LU>
 #include <cmath>
 
 namespace vitruvian {
