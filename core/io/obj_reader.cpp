@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <vector>
 
 #include "io/readers.h"
@@ -104,7 +105,8 @@ class ObjReader {
   void read_face() {
     corners_.clear();
     // Line numbers cost a pass over the text, so faces are placed by counting forward from the last one.
-    for (; counted_to_ != cursor_.position(); ++counted_to_) line_ += *counted_to_ == '\n';
+    line_ += static_cast<std::size_t>(std::count(counted_to_, cursor_.position(), '\n'));
+    counted_to_ = cursor_.position();
     for (;;) {
       skip_blanks(cursor_);
       if (cursor_.at_line_end() || cursor_.peek() == '#') break;
