@@ -1,0 +1,260 @@
+#include "cli/arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "base/error.h"
+#include "pipeline/settings_names.h"
+
+namespace vitruvian {
+namespace {
+
+/// Adds an option whose values are the names of an enumeration.
+template <typename Enum>
+CLI::Option* add_choice(CLI::App& command, const std::string& name, Enum& target, const std::string& help) {
+  std::vector<std::string> names;
+  std::string shown;
+  for (const NamedValue<Enum>& value : named_values<Enum>()) {
+    names.emplace_back(value.name);
+    shown += (shown.empty() ? "" : "|") + names.back();
+  }
+  return command
+      .add_option_function<std::string>(
+          name, [&target](const std::string& text) { target = *value_named<Enum>(text); }, help)
+      ->check(CLI::IsMember(names).description(""))
+      ->type_name(shown);
+}
+
+/// Options that exist in the contract before their feature does.
+struct Pending {
+  std::vector<std::string> texts;
+  std::vector<int> numbers;
+  std::string init;
+  bool one_directional = false;
+};
+
+void add_method_options(CLI::App& command, RegisterArguments& a, Pending& pending) {
+  command.option_defaults()->group("Method");
+  add_choice(command, "--method", a.settings.method,
+             "ours, or every stage as published (paper), or as published with its CPU settings (paper-cpu)");
+  add_choice(command, "--align", a.settings.align,
+             "how up and front are found: by looking, or by PCA as published");
+  command.add_option("--views", a.settings.views, "number of pictures: 2 as published, or 8")
+      ->check(CLI::IsMember({2, 8}).description(""))
+      ->type_name("2|8");
+  command
+      .add_option("--min-visibility", a.settings.min_visibility,
+                  "landmarks seen less surely are not used, 0 to 1")
+      ->check(CLI::Range(0.0, 1.0).description(""))
+      ->type_name("F");
+  command.add_option("--init", pending.init, "start of the fit; FILE is an earlier registration.json")
+      ->type_name("auto|keypoints|tpose|FILE");
+  add_choice(command, "--solver", a.settings.solver, "optimiser of the fit");
+  const CLI::Validator positive = CLI::Range(1, 1000000).description("");
+  for (const char* name : {"--iterations", "--adam-iterations", "--chunk"}) {
+    pending.numbers.push_back(0);
+    command
+        .add_option_function<int>(
+            name, [](int) {},
+            std::string(name) == "--chunk" ? "rows of a distance matrix held at once (paper solver)"
+                                           : "iterations of each stage")
+        ->check(positive)
+        ->type_name("N");
+  }
+  command.add_flag("--one-directional", pending.one_directional,
+                   "distances from template to scan only (paper solver)");
+}
+
+void add_model_options(CLI::App& command, RegisterArguments& a) {
+  command.option_defaults()->group("Body model");
+  command.add_option("--model", a.model_file, "body model file (default: the bundled body)")
+      ->type_name("FILE");
+  add_choice(command, "--gender", a.settings.gender, "which population the shape is expected from");
+  command.add_option("--betas", a.settings.betas, "number of shape components (default: all)")
+      ->check(CLI::Range(1, 10000).description(""))
+      ->type_name("N");
+  command
+      .add_option_function<std::string>(
+          "--dmpl", [](const std::string&) {}, "soft-tissue model")
+      ->type_name("FILE");
+  command
+      .add_option_function<std::string>(
+          "--prior", [](const std::string&) {}, "pose prior file")
+      ->type_name("FILE");
+}
+
+void add_scan_options(CLI::App& command, RegisterArguments& a) {
+  command.option_defaults()->group("How the scan lies");
+  add_choice(command, "--units", a.settings.unit, "unit of the file");
+  add_choice(command, "--up", a.settings.up, "axis of the file that points up");
+  add_choice(command, "--front", a.settings.front, "axis of the file that the body faces");
+  command
+      .add_option_function<std::string>(
+          "--align-file", [](const std::string&) {}, "4x4 body_from_scan as JSON")
+      ->type_name("FILE");
+  command.option_defaults()->group("Edits made by hand");
+  const std::vector<std::pair<const char*, const char*>> edits = {
+      {"--keypoints", "joints placed by hand"},
+      {"--regions", "pairs of regions that belong together"},
+      {"--crop", "what to leave out of the scan"},
+      {"--project", "all of these in one file, as the page saves it"}};
+  for (const auto& [name, help] : edits) {
+    command
+        .add_option_function<std::string>(
+            name, [](const std::string&) {}, help)
+        ->type_name("FILE");
+  }
+}
+
+void add_output_options(CLI::App& command, RegisterArguments& a) {
+  command.option_defaults()->group("Output");
+  command.add_option("--out", a.out, "results go to DIR/NAME/ for each scan NAME")
+      ->required()
+      ->type_name("DIR");
+  command
+      .add_option_function<std::string>(
+          "--format",
+          [&a](const std::string& text) {
+            a.format = text == "obj" ? MeshFormat::obj : text == "glb" ? MeshFormat::glb : MeshFormat::ply;
+          },
+          "file format of the registered mesh")
+      ->check(CLI::IsMember({"ply", "obj", "glb"}).description(""))
+      ->type_name("ply|obj|glb");
+  add_choice(command, "--detail", a.settings.detail, "free-form refinement of each vertex after the fit");
+  command.add_option("--threads", a.settings.threads, "threads to use (default: all of the machine's)")
+      ->check(CLI::Range(1, 256).description(""))
+      ->type_name("N");
+  command.add_option("--seed", a.settings.seed, "seed of all random choices (default: 1)")->type_name("N");
+  command.add_flag("--quiet", a.quiet, "no progress, no report");
+  command.add_flag("--json", a.json, "one line of JSON on stdout for each scan");
+}
+
+void settle_register(const CLI::App& command, const Pending& pending, RegisterArguments& a) {
+  for (const char* name : {"--iterations", "--adam-iterations", "--chunk", "--one-directional", "--dmpl",
+                           "--prior", "--align-file", "--keypoints", "--regions", "--crop", "--project"}) {
+    if (command.count(name) > 0) a.not_available.emplace_back(name);
+  }
+  if (a.settings.method != Method::ours)
+    a.not_available.push_back("--method " + to_string(a.settings.method));
+  if (a.settings.solver != SolverKind::fast)
+    a.not_available.push_back("--solver " + to_string(a.settings.solver));
+  if (a.settings.detail != DetailMode::off)
+    a.not_available.push_back("--detail " + to_string(a.settings.detail));
+  if (pending.init.empty()) return;
+  const std::optional<InitMode> init = value_named<InitMode>(pending.init);
+  if (!init || *init == InitMode::tpose) {
+    a.not_available.push_back("--init " + pending.init);
+  } else {
+    a.settings.init = *init;
+  }
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+std::string registered_mesh_name(MeshFormat format) {
+  switch (format) {
+    case MeshFormat::ply:
+      return "registered.ply";
+    case MeshFormat::obj:
+      return "registered.obj";
+    case MeshFormat::glb:
+      return "registered.glb";
+  }
+  throw Error(ErrorCode::internal, "unknown mesh format");
+}
+
+Arguments parse_arguments(const std::vector<std::string>& arguments) {
+  CLI::App app("Vitruvian registers a parametric body to 3D body scans.", "vitruvian");
+  const std::string version = std::string("vitruvian ") + VITRUVIAN_VERSION;
+  app.set_help_flag("--help,-h", "show this text");
+  app.set_version_flag("--version", version);
+  app.require_subcommand(0, 1);
+  app.footer(
+      "Exit status: 0 all ok, 1 a verdict is doubtful or failed, 2 wrong usage, 3 a scan could not be read,\n"
+      "4 an output could not be written or an internal error, 130 interrupted.");
+
+  RegisterArguments registering;
+  Pending pending;
+  CLI::App& register_command = *app.add_subcommand("register", "fit the body to scans");
+  register_command
+      .add_option("SCAN", registering.scans, "PLY, OBJ, STL, OFF, GLB, XYZ or PCD file, gzipped or not")
+      ->required()
+      ->type_name("");
+  add_method_options(register_command, registering, pending);
+  add_model_options(register_command, registering);
+  add_scan_options(register_command, registering);
+  add_output_options(register_command, registering);
+
+  CLI::App& measure_command =
+      *app.add_subcommand("measure", "lengths, girths, volumes and sections of a registration");
+  std::vector<std::string> ignored;
+  measure_command.add_option("REGISTRATION", ignored, "a registration.json")
+      ->required()
+      ->type_name("")
+      ->expected(1);
+  for (const auto& [name, type] :
+       std::vector<std::pair<const char*, const char*>>{{"--out", "DIR"},
+                                                        {"--model", "FILE"},
+                                                        {"--scan", "FILE"},
+                                                        {"--section", "SEGMENT:t=F|SEGMENT:d=MM[@distal]"},
+                                                        {"--profile", "SEGMENT:N"}}) {
+    measure_command
+        .add_option_function<std::vector<std::string>>(name, [](const std::vector<std::string>&) {})
+        ->type_name(type)
+        ->expected(1)
+        ->take_all();
+  }
+
+  EvaluateArguments evaluating;
+  CLI::App& evaluate_command =
+      *app.add_subcommand("evaluate", "joint errors of a registration against known joints, as JSON");
+  evaluate_command.add_option("REGISTRATION", evaluating.registration_file, "a registration.json")
+      ->required()
+      ->type_name("");
+  evaluate_command.add_option("--truth", evaluating.truth_file, "known joints of the scan")
+      ->required()
+      ->type_name("TRUTH.json");
+
+  ModelInfoArguments informing;
+  CLI::App& model_command = *app.add_subcommand("model", "look into body models");
+  model_command.require_subcommand(1);
+  CLI::App& info_command = *model_command.add_subcommand("info", "print what a body model file holds");
+  info_command.add_option("FILE", informing.file, "body model file")->required()->type_name("");
+
+  std::string help_about;
+  CLI::App& help_command = *app.add_subcommand("help", "help on a command");
+  help_command.add_option("COMMAND", help_about, "register, measure, evaluate or model")->type_name("");
+
+  try {
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForHelp&) {
+    return PrintArguments{app.help()};
+  } catch (const CLI::CallForVersion&) {
+    return PrintArguments{version + "\n"};
+  } catch (const CLI::ParseError& error) {
+    std::string about;
+    for (const CLI::App* used : app.get_subcommands()) about = " " + used->get_name();
+    throw Error(ErrorCode::usage, first_line(error.what()) + "\nRun: vitruvian help" + about);
+  }
+  if (help_command.parsed()) {
+    if (help_about.empty()) {
+      return PrintArguments{app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal)};
+    }
+    for (const CLI::App* command : app.get_subcommands(nullptr)) {
+      if (command->get_name() == help_about) return PrintArguments{command->help(app.get_name())};
+    }
+    throw Error(ErrorCode::usage, "there is no command \"" + help_about + "\"\nRun: vitruvian help");
+  }
+  if (register_command.parsed()) {
+    settle_register(register_command, pending, registering);
+    return registering;
+  }
+  if (measure_command.parsed()) return MeasureArguments{};
+  if (evaluate_command.parsed()) return evaluating;
+  if (info_command.parsed()) return informing;
+  throw Error(ErrorCode::usage, "a command is missing\nRun: vitruvian help");
+}
+
+}  // namespace vitruvian

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "pipeline/settings.h"
+
+namespace vitruvian {
+
+enum class MeshFormat { ply, obj, glb };
+/// File name of the registered mesh, e.g. "registered.ply".
+std::string registered_mesh_name(MeshFormat format);
+
+/// `vitruvian register`.
+struct RegisterArguments {
+  std::vector<std::string> scans;
+  std::string out;
+  Settings settings;
+  std::string model_file;  ///< empty: the default body
+  MeshFormat format = MeshFormat::ply;
+  bool quiet = false;
+  bool json = false;
+  /// Options that were given, are documented, and have no implementation in this build.
+  std::vector<std::string> not_available;
+};
+
+/// `vitruvian evaluate`.
+struct EvaluateArguments {
+  std::string registration_file;
+  std::string truth_file;
+};
+
+/// `vitruvian model info`.
+struct ModelInfoArguments {
+  std::string file;
+};
+
+/// `vitruvian measure`: its options are known, the command has no implementation yet.
+struct MeasureArguments {};
+
+/// A text the user asked for: help or version.
+struct PrintArguments {
+  std::string text;
+};
+
+using Arguments =
+    std::variant<PrintArguments, RegisterArguments, MeasureArguments, EvaluateArguments, ModelInfoArguments>;
+
+/// Parses the command line (contract.md "CLI").
+/// @param arguments  without the program's name.
+/// @throws Error(usage) saying which option is wrong and how to get help.
+Arguments parse_arguments(const std::vector<std::string>& arguments);
+
+}  // namespace vitruvian

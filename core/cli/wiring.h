@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/run_cli.h"
+
+namespace vitruvian {
+
+/// The registration of this program: bundled or given models, networks run by OpenCV.
+/// @param folders  searched for models and networks, see data_folders().
+RegisterFactory native_register(std::vector<std::string> folders);
+
+}  // namespace vitruvian
