@@ -14,6 +14,7 @@ namespace {
 constexpr int kAxes = kSkyDirections / 2;
 constexpr int kMapSize = 256;
 constexpr float kBiasPixels = 1.5f;
+constexpr float kDiscBias = 1.5f;
 /// Slope beyond which the depth test is not loosened further.
 constexpr float kSteepest = 3.0f;
 
@@ -148,7 +149,10 @@ std::vector<std::uint64_t> sky_visibility(const Points3f& vertices, const Faces&
         const std::size_t pixel = static_cast<std::size_t>(y) * kMapSize + x;
         const float cosine = std::fabs(line.col(i).dot(toward));
         const float slope = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / std::max(cosine, 0.1f);
-        const float bias = kBiasPixels * (faces.cols() > 0 ? std::clamp(slope, 1.0f, kSteepest) : 2.0f);
+        // A disc that faces the viewer stands out from a slanting surface by up to its radius times the
+        // slope.
+        const float bias = faces.cols() > 0 ? kBiasPixels * std::clamp(slope, 1.0f, kSteepest)
+                                            : 2 * kBiasPixels + kDiscBias * radii[i];
         if (screen(2, i) >= range.nearest[pixel] - bias) seen[i] |= std::uint64_t{1} << k;
         if (screen(2, i) <= range.farthest[pixel] + bias) seen[i] |= std::uint64_t{1} << (k + kAxes);
       }

@@ -65,24 +65,34 @@ void scan_triangles(int width, int height, const Points3f& screen, const Faces& 
   }
 }
 
-/// Calls put(pixel, z of the point, depth below the bulge's top, point).
+/// Calls put(pixel, z, point) for each pixel of each disc.
 template <class Put>
-void scan_discs(int width, int height, const Points3f& screen, const Eigen::VectorXf& radii, const Put& put) {
+void scan_discs(int width, int height, const Points3f& screen, const Eigen::VectorXf& radii,
+                const Points3f& normals, const Put& put) {
+  constexpr float kFlattest = 0.1f;  // |z| of a normal; discs seen edge-on stay a little open
+  constexpr float kBulge = 0.5f;
   for (Index i = 0; i < screen.cols(); ++i) {
     const float x = screen(0, i), y = screen(1, i), z = screen(2, i);
     if (!(std::isfinite(x) && std::isfinite(y) && std::isfinite(z))) continue;
     const std::int32_t point = static_cast<std::int32_t>(i);
     const float r = std::isfinite(radii[i]) ? std::max(radii[i], 0.0f) : 0.0f, r2 = r * r;
     if (x >= 0 && y >= 0 && x < width && y < height) {
-      put(static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x), z, 0.0f, point);
+      put(static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x), z, point);
+    }
+    float slope_x = 0, slope_y = 0;
+    if (normals.cols() > 0 && normals.col(i).squaredNorm() > 0.5f) {
+      const float nz = std::copysign(std::max(std::fabs(normals(2, i)), kFlattest), normals(2, i));
+      slope_x = -normals(0, i) / nz;
+      slope_y = -normals(1, i) / nz;
     }
     const int y0 = first_pixel(y - r, height), y1 = last_pixel(y + r, height);
     const int x0 = first_pixel(x - r, width), x1 = last_pixel(x + r, width);
     for (int v = y0; v <= y1; ++v) {
       const float dy = v + 0.5f - y;
       for (int u = x0; u <= x1; ++u) {
-        const float dx = u + 0.5f - x, d2 = dx * dx + dy * dy;
-        if (d2 <= r2) put(static_cast<std::size_t>(v) * width + u, z, 0.5f * d2 / r, point);
+        const float dx = u + 0.5f - x, dz = slope_x * dx + slope_y * dy;
+        const float d2 = dx * dx + dy * dy + dz * dz;
+        if (d2 <= r2) put(static_cast<std::size_t>(v) * width + u, z + dz - kBulge * d2 / r, point);
       }
     }
   }
@@ -115,12 +125,12 @@ void draw_triangles(Raster& raster, const Points3f& screen, const Faces& faces) 
                  });
 }
 
-void draw_discs(Raster& raster, const Points3f& screen, const Eigen::VectorXf& radii) {
-  scan_discs(raster.width, raster.height, screen, radii,
-             [&raster](std::size_t pixel, float z, float below, std::int32_t point) {
-               const float bulged = z - below;
-               if (bulged <= raster.depth[pixel]) return;
-               raster.depth[pixel] = bulged;
+void draw_discs(Raster& raster, const Points3f& screen, const Eigen::VectorXf& radii,
+                const Points3f& normals) {
+  scan_discs(raster.width, raster.height, screen, radii, normals,
+             [&raster](std::size_t pixel, float z, std::int32_t point) {
+               if (z <= raster.depth[pixel]) return;
+               raster.depth[pixel] = z;
                raster.source[pixel] = point;
                raster.weight1[pixel] = raster.weight2[pixel] = 0;
              });
@@ -135,10 +145,12 @@ void draw_triangles(DepthRange& range, const Points3f& screen, const Faces& face
 }
 
 void draw_discs(DepthRange& range, const Points3f& screen, const Eigen::VectorXf& radii) {
-  scan_discs(range.width, range.height, screen, radii,
-             [&range](std::size_t pixel, float z, float, std::int32_t) {
-               range.nearest[pixel] = std::max(range.nearest[pixel], z);
-               range.farthest[pixel] = std::min(range.farthest[pixel], z);
+  // What bulges toward the viewer in front must not bulge away from the viewer behind: both keep to the
+  // plane.
+  scan_discs(range.width, range.height, screen, radii, Points3f(3, 0),
+             [&](std::size_t pixel, float, std::int32_t point) {
+               range.nearest[pixel] = std::max(range.nearest[pixel], screen(2, point));
+               range.farthest[pixel] = std::min(range.farthest[pixel], screen(2, point));
              });
 }
 

@@ -26,11 +26,13 @@ struct Raster {
 /// @param screen  3 x V in screen space.  @param faces  3 x F into `screen`.
 void draw_triangles(Raster& raster, const Points3f& screen, const Faces& faces);
 
-/// Draws each point as a disc that faces the viewer and bulges a little at its centre, so that of two
-/// overlapping discs of one surface each shows its own half. Smaller than a pixel, a point still covers the
-/// pixel it lies in.
-/// @param radii  V, pixels.
-void draw_discs(Raster& raster, const Points3f& screen, const Eigen::VectorXf& radii);
+/// Draws each point as a disc across its normal, or facing the viewer where the normal is zero. Discs bulge a
+/// little at their centres, so that of two overlapping ones on one surface each shows its own half. Smaller
+/// than a pixel, a point still covers the pixel it lies in.
+/// @param radii  V, pixels.  @param normals  3 x V unit or zero, screen axes, any sign; or empty: all face
+/// the viewer.
+void draw_discs(Raster& raster, const Points3f& screen, const Eigen::VectorXf& radii,
+                const Points3f& normals);
 
 /// Nearest and farthest depth of a picture: what a viewer sees from the front and from behind, in one pass.
 struct DepthRange {

@@ -107,7 +107,9 @@ View render(const ViewSurface& surface, const Camera& camera, const ViewStyle& s
   Raster raster(camera.width, camera.height);
   const bool cloud = surface.faces.cols() == 0;
   if (cloud) {
-    draw_discs(raster, screen, surface.point_radii * scale);
+    Points3f normals = camera_from_surface * surface.normals;
+    normals.row(1) *= -1;
+    draw_discs(raster, screen, surface.point_radii * scale, normals);
   } else {
     draw_triangles(raster, screen, surface.faces);
   }
