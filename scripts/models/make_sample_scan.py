@@ -78,7 +78,7 @@ def identity(package, modifiers, rng):
     """({target: weight}) of one man of the package's default height, whose joint cubes are all admitted."""
     p = draw(modifiers, 1, rng)
     p.update(gender=np.array([0.95]), age=np.array([0.12]), muscle=np.array([0.58]), weight=np.array([0.72]))
-    p.update(height=np.array([0.5]), proportions=np.array([0.6]), race=np.array([[0.7, 0.1, 0.2]]))
+    p.update(completed=np.array([1.0]), height=np.array([0.5]), proportions=np.array([0.6]), race=np.array([[0.7, 0.1, 0.2]]))
     p["detail"] *= 0.8
     p["asymmetry"] *= 2
     amounts = {}

@@ -1,5 +1,6 @@
 """A population of adult characters: parameters drawn and calibrated to realistic stature and body mass index."""
 import numpy as np
+from scipy.special import ndtri
 
 from .package import CUBES, SKIN
 from .surface import mirror_partners
@@ -12,6 +13,8 @@ STATURE_RANGE = (1.40, 2.10)
 BMI = {"female": (25.8, 0.20), "male": (26.3, 0.175)}
 BMI_RANGE = (16.5, 43.0)
 ASYMMETRY_SD = 0.03
+# Share of the characters in which targets that are not admitted are left out; in the others they are completed.
+LEFT_OUT_SHARE = 0.4
 # Offsets of single modifiers (female, male) that bring hip and waist girths and arm span nearer to the surveys.
 DETAIL_MEAN = {
     "hip/hip-scale-horiz": (-0.4, -0.3),
@@ -65,8 +68,11 @@ class Shapes:
         return self.joint_base + np.einsum("ns,sjc->njc", weights[:, known].astype(float), self.joint_basis[known])
 
 
-def draw(modifiers, count, rng, detail_mean=None):
-    """Random adult parameters: half women, half men, 18 to 82 years. Height and weight are left to `calibrated`."""
+def draw(modifiers, count, rng, detail_mean=None, left_out_share=LEFT_OUT_SHARE):
+    """Random adult parameters: half women, half men, 18 to 82 years. Height and weight are left to `calibrated`.
+
+    detail_mean: offsets of modifiers (female, male), by default DETAIL_MEAN.
+    """
     male = rng.random(count) < 0.5
     androgyny = np.abs(rng.normal(0, 0.07, count))
     age = np.clip((rng.triangular(18, 30, 82, count) - 25) / 65, 0, 1)
@@ -79,7 +85,11 @@ def draw(modifiers, count, rng, detail_mean=None):
     def by_sex(table, k):
         return np.where(male, table["male"][k], table["female"][k])
 
-    normal = rng.normal(size=(2, count))
+    # Normal quantiles in random order: the spread of stature and BMI is exact in every draw.
+    normal = np.empty((2, count))
+    for members in (np.nonzero(male)[0], np.nonzero(~male)[0]):
+        for row in normal:
+            row[members] = ndtri((rng.permutation(len(members)) + 0.5) / max(len(members), 1))
     detail = centre[male.astype(int)] + rng.normal(size=(count, len(centre[0]))) * modifiers.detail_sd
     return {
         "male": male,
@@ -95,6 +105,7 @@ def draw(modifiers, count, rng, detail_mean=None):
         "detail": detail.clip(-1, 1),
         "asymmetry": rng.normal(0, ASYMMETRY_SD, (count, len(centre[0]))),
         "stature": (by_sex(STATURE, 0) + by_sex(STATURE, 1) * normal[0]).clip(*STATURE_RANGE),
+        "completed": (rng.random(count) >= left_out_share).astype(float),
         "bmi": (by_sex(BMI, 0) * np.exp(by_sex(BMI, 1) * normal[1])).clip(*BMI_RANGE),
     }
 

@@ -1,8 +1,8 @@
 """The package's shape modifiers: how parameters of a character become weights of targets.
 
-A target that is not admitted is completed from admitted ones: a corner of the macro grid from the parallelograms of
-its neighbours, one side of a pair from the mirror image of the other, one sense of a modifier from the negative of the
-other; what cannot be completed is left out.
+A target that is not admitted is left out, or completed from admitted ones: a corner of the macro grid from the
+parallelograms of its neighbours, one side of a pair from the mirror image of the other, one sense of a modifier from
+the negative of the other. A character has either (parameter "completed", 0..1); a population has some of both.
 """
 import itertools
 
@@ -183,7 +183,11 @@ class Modifiers:
                 return PREFIX + pattern.format(**values) + SUFFIX
 
             grid = _completed_grid(package, axes, name_of)
-            self._grids.append((axes, [(c, self._columns(combination)) for c, combination in grid.items()]))
+            corners = [
+                (c, self._columns(combination), list(combination) not in ([], [(name_of(c), False)]))
+                for c, combination in grid.items()
+            ]
+            self._grids.append((axes, corners))
         self.detail_names, sd, self._details = [], [], []
         for stem, negative, positive, deviation in DETAILS:
             both = ("l", "r") if "*" in stem else ("",)
@@ -204,7 +208,7 @@ class Modifiers:
         return columns
 
     def _detail_side(self, package, stem, side, negative, positive):
-        """(columns of the negative sense, columns of the positive one) or None when neither is to be had."""
+        """For the negative and the positive sense (columns, whether completed), or None when neither is to be had."""
 
         def one(sense):
             name = f"{PREFIX}{stem.replace('*', side)}-{sense}{SUFFIX}"
@@ -217,9 +221,10 @@ class Modifiers:
         low, high = one(negative), one(positive)
         if not low and not high:
             return None
-        low_columns = self._columns({low: 1.0} if low else {high: -1.0})
-        high_columns = self._columns({high: 1.0} if high else {low: -1.0})
-        return low_columns, high_columns
+        return tuple(
+            (self._columns({own: 1.0} if own else {opposite: -1.0}), own is None or own[1])
+            for own, opposite in ((low, high), (high, low))
+        )
 
     def weights(self, p):
         """Weights of the sources, float32 [N,S]. p: parameters as from characters.draw; with "asymmetry" [N,details]
@@ -227,14 +232,16 @@ class Modifiers:
         axis = _axis_weights(p)
         out = np.zeros((len(p["gender"]), len(self.sources)), np.float64)
         for axes, corners in self._grids:
-            for corner, columns in corners:
+            for corner, columns, completed in corners:
                 w = np.prod([axis[a][:, k] for a, k in zip(axes, corner)], 0)
+                w = w * p["completed"] if completed else w
                 for column, factor in columns:
                     out[:, column] += factor * w
         for i, sides in enumerate(self._details):
             for side, (low, high) in enumerate(sides):
                 value = p["detail"][:, i] + (p["asymmetry"][:, i] if len(sides) == 2 and side == 0 else 0)
-                for columns, amount in ((low, np.maximum(0, -value)), (high, np.maximum(0, value))):
+                for (columns, completed), amount in ((low, np.maximum(0, -value)), (high, np.maximum(0, value))):
+                    amount = amount * p["completed"] if completed else amount
                     for column, factor in columns:
                         out[:, column] += factor * amount
         return out.astype(np.float32)

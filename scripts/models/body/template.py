@@ -34,6 +34,7 @@ def reference_parameters(details):
     p = {name: np.array([value]) for name, value in values.items()}
     return p | {
         "firmness": np.array([0.5]),
+        "completed": np.array([1.0]),
         "race": np.full((1, 3), 1 / 3),
         "detail": np.zeros((1, details)),
         "asymmetry": np.zeros((1, details)),
