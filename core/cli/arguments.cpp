@@ -28,7 +28,6 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, Enum& target
 /// Options that exist in the contract before their feature does.
 struct Pending {
   std::vector<std::string> texts;
-  std::vector<int> numbers;
   std::string init;
   bool one_directional = false;
 };
@@ -51,13 +50,14 @@ void add_method_options(CLI::App& command, RegisterArguments& a, Pending& pendin
       ->type_name("auto|keypoints|tpose|FILE");
   add_choice(command, "--solver", a.settings.solver, "optimiser of the fit");
   const CLI::Validator positive = CLI::Range(1, 1000000).description("");
-  for (const char* name : {"--iterations", "--adam-iterations", "--chunk"}) {
-    pending.numbers.push_back(0);
+  const std::vector<std::pair<const char*, const char*>> counts = {
+      {"--iterations", "iterations of each stage"},
+      {"--adam-iterations", "Adam iterations of each stage before L-BFGS (paper solver)"},
+      {"--chunk", "rows of the distance matrix held at once (paper solver)"}};
+  for (const auto& [name, help] : counts) {
     command
         .add_option_function<int>(
-            name, [](int) {},
-            std::string(name) == "--chunk" ? "rows of a distance matrix held at once (paper solver)"
-                                           : "iterations of each stage")
+            name, [](int) {}, help)
         ->check(positive)
         ->type_name("N");
   }

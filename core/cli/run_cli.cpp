@@ -36,7 +36,8 @@ ExitStatus run_cli(const std::vector<std::string>& arguments, const CliContext& 
     context.error << "vitruvian: standard output cannot be written\n";
     return ExitStatus::internal;
   } catch (const Error& error) {
-    context.error << "vitruvian: " << error.what() << "\n";
+    const bool interrupted = error.code() == ErrorCode::cancelled;
+    context.error << "vitruvian: " << (interrupted ? "interrupted" : error.what()) << "\n";
     switch (error.code()) {
       case ErrorCode::cancelled:
         return ExitStatus::interrupted;

@@ -19,11 +19,11 @@ std::string pooled_line(const char* title, const DistanceStatistics& s) {
 }
 
 std::string error_table(const SurfaceError& error) {
-  std::string out = text("Error (mm)                              mean  median     p95     max\n");
+  std::string out = "Error (mm)                              mean  median     p95     max\n";
   out += pooled_line("model to the scan's surface", error.surface_all);
   out += pooled_line("model to matched scan points", error.all);
   out += pooled_line("scan to the model's surface", error.scan_to_model);
-  out += text("By segment, to the scan's surface   seen    mean  median     p95     max\n");
+  out += "By segment, to the scan's surface   seen    mean  median     p95     max\n";
   for (const SegmentError& row : error.surface_segments) {
     out += text("  %-32s %4.0f%%", plain_name(row.segment).c_str(), 100 * row.observed);
     if (row.statistics) {

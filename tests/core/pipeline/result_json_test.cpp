@@ -136,8 +136,8 @@ TEST(ResultJson, WhatIsNotFiniteBecomesNull) {
 TEST(ResultJson, BytesThatAreNoUtf8DoNotBreakIt) {
   Registration r = sample_registration();
   r.scan.file = "scan\xff\xfe.ply";
-  EXPECT_NO_THROW(ordered_json::parse(registration_json(r, "1", JsonStyle::pretty)));
-  EXPECT_NO_THROW(ordered_json::parse(error_json("a\xff", "bad_file", "x\xc3")));
+  EXPECT_TRUE(ordered_json::accept(registration_json(r, "1", JsonStyle::pretty)));
+  EXPECT_TRUE(ordered_json::accept(error_json("a\xff", "bad_file", "x\xc3")));
 }
 
 TEST(ResultJson, ErrorLine) {
