@@ -1,0 +1,171 @@
+// Entry points for web/src/worker/core.ts. Text goes out as zero-terminated UTF-8 that stays valid until the
+// next call. No exception leaves: a call that fails returns null (or 0) and last_error() tells why.
+#include <emscripten.h>
+
+#include <exception>
+#include <memory>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+#include "session.h"
+
+#ifndef __EMSCRIPTEN_PTHREADS__
+#define VITRUVIAN_THREADED 0
+#else
+#define VITRUVIAN_THREADED 1
+#endif
+
+namespace {
+
+using vitruvian::Error;
+using vitruvian::ErrorCode;
+using vitruvian::wasm::Buffer;
+using vitruvian::wasm::ModelPart;
+using vitruvian::wasm::Session;
+using vitruvian::wasm::TaskError;
+using vitruvian::wasm::TaskProgress;
+
+// The module is the session: one worker, one scan.
+std::unique_ptr<Session> session;
+std::string text;
+TaskError failure;
+
+std::string json_of(const TaskError& error) {
+  const nlohmann::json json = {{"code", error.code}, {"message", error.message}};
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// Runs `call`; what it throws becomes the failure, and `otherwise` the result.
+template <typename Call, typename Result>
+Result guarded(const Call& call, Result otherwise) noexcept {
+  try {
+    return call();
+  } catch (const Error& error) {
+    failure = {std::string(name_of(error.code())), error.what()};
+  } catch (const std::bad_alloc&) {
+    failure = {"out_of_memory", "memory ran out"};
+  } catch (const std::exception& error) {
+    failure = {"internal", error.what()};
+  }
+  return otherwise;
+}
+
+Session& open_session() {
+  if (!session) throw Error(ErrorCode::internal, "the session was not created");
+  return *session;
+}
+
+const char* kept(std::string value) {
+  text = std::move(value);
+  return text.c_str();
+}
+
+const char* const kNoText = nullptr;
+
+}  // namespace
+
+extern "C" {
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_version() { return VITRUVIAN_VERSION; }
+
+EMSCRIPTEN_KEEPALIVE int vitruvian_has_threads() { return VITRUVIAN_THREADED; }
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_last_error() { return kept(json_of(failure)); }
+
+EMSCRIPTEN_KEEPALIVE int vitruvian_create(int threads) {
+  return guarded(
+      [&] {
+        session = std::make_unique<Session>(VITRUVIAN_THREADED ? threads : 1);
+        return 1;
+      },
+      0);
+}
+
+/// Takes `data` (from malloc) over.
+EMSCRIPTEN_KEEPALIVE int vitruvian_open(std::byte* data, std::size_t size, const char* name) {
+  Buffer buffer(data, size);
+  return guarded(
+      [&] {
+        open_session().open(std::move(buffer), name);
+        return 1;
+      },
+      0);
+}
+
+/// TaskState of the task started last.
+EMSCRIPTEN_KEEPALIVE int vitruvian_task_state() {
+  return session ? static_cast<int>(session->task().state()) : 0;
+}
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_task_progress() {
+  return guarded(
+      [&] {
+        const TaskProgress progress = open_session().task().progress();
+        const nlohmann::json json = {{"stage", progress.stage}, {"fraction", progress.fraction}};
+        return kept(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+      },
+      kNoText);
+}
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_task_error() {
+  return guarded([&] { return kept(json_of(open_session().task().error())); }, kNoText);
+}
+
+EMSCRIPTEN_KEEPALIVE void vitruvian_cancel() {
+  if (session) session->task().cancel();
+}
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_scan_report() {
+  return guarded([&] { return kept(open_session().scan_report()); }, kNoText);
+}
+
+/// Takes `data` (from malloc) over. @param part  a ModelPart.
+EMSCRIPTEN_KEEPALIVE int vitruvian_load_model(int part, std::byte* data, std::size_t size, const char* name) {
+  const Buffer buffer(data, size);
+  return guarded(
+      [&] {
+        open_session().load(static_cast<ModelPart>(part), buffer, name);
+        return 1;
+      },
+      0);
+}
+
+EMSCRIPTEN_KEEPALIVE int vitruvian_begin(const char* settings) {
+  return guarded(
+      [&] {
+        open_session().begin(settings);
+        return 1;
+      },
+      0);
+}
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_request_report() {
+  return guarded([&] { return kept(open_session().request_report()); }, kNoText);
+}
+
+EMSCRIPTEN_KEEPALIVE float* vitruvian_reply_buffer(std::size_t input, std::size_t output, std::size_t size) {
+  return guarded([&] { return open_session().reply_buffer(input, output, size); },
+                 static_cast<float*>(nullptr));
+}
+
+EMSCRIPTEN_KEEPALIVE int vitruvian_resume() {
+  return guarded(
+      [&] {
+        open_session().resume();
+        return 1;
+      },
+      0);
+}
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_result_report() {
+  return guarded([&] { return kept(open_session().result_report()); }, kNoText);
+}
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_files_report(const char* mesh_format) {
+  return guarded([&] { return kept(open_session().files_report(mesh_format)); }, kNoText);
+}
+
+}  // extern "C"

@@ -1,0 +1,185 @@
+#include "session.h"
+
+#include <Eigen/LU>
+#include <chrono>
+#include <cstdlib>
+#include <utility>
+
+#include "io/mesh_writer.h"
+#include "pipeline/report.h"
+#include "pipeline/result_json.h"
+#include "session_json.h"
+
+namespace vitruvian::wasm {
+namespace {
+
+/// Vertices that the view draws at most; larger scans are thinned.
+constexpr int kShownVertices = 150'000;
+
+std::string mesh_text(const Registration& registration, const std::string& format) {
+  MeshView mesh{registration.registered_vertices, registration.registered_faces};
+  mesh.values = registration.vertex_error_mm;
+  mesh.value_name = "error_mm";
+  if (format == "ply") return to_ply(mesh);
+  if (format == "obj") return to_obj(mesh);
+  if (format == "glb") return to_glb(mesh, registration.alignment.body_from_scan);
+  throw Error(ErrorCode::usage, "unknown mesh format \"" + format + "\"");
+}
+
+double extent_along_up(const Points3f& points, const Mat4d& body_from_scan) {
+  if (points.cols() == 0) return 0;
+  const Eigen::VectorXf along = body_from_scan.block<1, 3>(1, 0).cast<float>() * points;
+  return along.maxCoeff() - along.minCoeff();
+}
+
+}  // namespace
+
+Buffer::Buffer(Buffer&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+  std::swap(data_, other.data_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+Buffer::~Buffer() { std::free(data_); }
+
+Session::~Session() { task_.stop(); }
+
+void Session::load(ModelPart part, const Buffer& file, const std::string& name) {
+  switch (part) {
+    case ModelPart::body:
+      models_.body = read_body_model(file.bytes(), name);
+      return;
+    case ModelPart::prior:
+      models_.prior = read_pose_prior(file.bytes(), name);
+      return;
+    case ModelPart::landmarks:
+      models_.landmarks = landmarks_from_json(
+          std::string(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()), name);
+      return;
+  }
+  throw Error(ErrorCode::internal, "unknown model part");
+}
+
+void Session::open(Buffer file, std::string name) {
+  task_.require_idle();
+  pipeline_.reset();
+  registration_.reset();
+  scan_.reset();
+  shown_ = {};
+  // std::function wants what it holds to be copyable.
+  auto held = std::make_shared<Buffer>(std::move(file));
+  task_.start([this, held, name = std::move(name)] {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point began = Clock::now();
+    task_.execution().progress("read", 0);
+    Scan scan = read_scan(held->bytes(), name, task_.execution());
+    *held = Buffer();
+    read_ms_ = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+    const Points3f normals = Points3f::Zero(3, scan.vertices.cols());
+    shown_ = cluster_decimate(scan.vertices, normals, scan.faces, kShownVertices);
+    shown_.normals.resize(3, 0);
+    scan_ = std::move(scan);
+  });
+}
+
+std::string Session::scan_report() const {
+  if (!scan_) throw Error(ErrorCode::internal, "no scan is open");
+  return text_of(describe_scan(*scan_, shown_));
+}
+
+void Session::begin(const std::string& settings) {
+  task_.require_idle();
+  if (!scan_) throw Error(ErrorCode::usage, "open a scan first");
+  Settings chosen = parse_settings(settings);
+  chosen.threads = task_.execution().threads();
+  registration_.reset();
+  pipeline_ = std::make_unique<RegistrationPipeline>(models_, chosen, task_.execution());
+  pipeline_->set_read_time(read_ms_);
+  task_.start([this] {
+    pipeline_->set_scan(*scan_);
+    advance();
+  });
+}
+
+void Session::resume() {
+  if (!request_) throw Error(ErrorCode::internal, "no network request is open");
+  task_.start([this] {
+    pipeline_->accept(reply_);
+    advance();
+  });
+}
+
+void Session::advance() {
+  request_ = pipeline_->next_request();
+  reply_ = {};
+  if (request_) {
+    reply_.outputs.resize(request_->inputs.size());
+    return;
+  }
+  registration_ = pipeline_->finish();
+  keep_result();
+}
+
+void Session::keep_result() {
+  const Mat4d& body_from_scan = registration_->alignment.body_from_scan;
+  body_vertices_ = ((body_from_scan.topLeftCorner<3, 3>() * registration_->registered_vertices).colwise() +
+                    body_from_scan.topRightCorner<3, 1>())
+                       .cast<float>();
+  height_m_ = extent_along_up(scan_->vertices, body_from_scan);
+}
+
+std::string Session::request_report() const {
+  return text_of(request_ ? describe_request(*request_) : nlohmann::json());
+}
+
+float* Session::reply_buffer(std::size_t input, std::size_t output, std::size_t size) {
+  if (input >= reply_.outputs.size())
+    throw Error(ErrorCode::internal, "a reply to an input that was not asked for");
+  NetworkOutputs& outputs = reply_.outputs[input];
+  if (output >= outputs.size()) outputs.resize(output + 1);
+  outputs[output].resize(size);
+  return outputs[output].data();
+}
+
+std::string Session::result_report() const {
+  if (!registration_) throw Error(ErrorCode::internal, "nothing has been registered");
+  nlohmann::json report = {
+      {"registration",
+       nlohmann::json::parse(registration_json(*registration_, VITRUVIAN_VERSION, JsonStyle::compact))},
+      {"body", array_reference(body_vertices_.data(), body_vertices_.size())},
+      {"faces",
+       array_reference(registration_->registered_faces.data(), registration_->registered_faces.size())},
+      {"errors_mm",
+       array_reference(registration_->vertex_error_mm.data(), registration_->vertex_error_mm.size())},
+      {"height_m", height_m_},
+      {"views", nlohmann::json::array()},
+  };
+  if (const LandmarkStage* stage = pipeline_->landmark_stage()) report["views"] = describe_views(*stage);
+  return text_of(report);
+}
+
+std::string Session::files_report(const std::string& mesh_format) {
+  if (!registration_) throw Error(ErrorCode::internal, "nothing has been registered");
+  const bool has_mesh =
+      registration_->verdict.status != VerdictStatus::failed && registration_->registered_vertices.cols() > 0;
+  std::vector<std::string> names = {"registration.json"};
+  files_ = {registration_json(*registration_, VITRUVIAN_VERSION, JsonStyle::pretty)};
+  if (has_mesh) {
+    names.push_back("registered." + mesh_format);
+    files_.push_back(mesh_text(*registration_, mesh_format));
+    if (registration_->surface_error) {
+      names.emplace_back("errors.csv");
+      files_.push_back(errors_csv(*registration_->surface_error));
+    }
+  }
+  nlohmann::json files = nlohmann::json::array();
+  for (std::size_t i = 0; i < files_.size(); ++i) {
+    files.push_back({{"name", names[i]}, {"data", array_reference(files_[i].data(), files_[i].size())}});
+  }
+  return text_of({{"files", files}});
+}
+
+}  // namespace vitruvian::wasm

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "io/scan.h"
+#include "pipeline/models.h"
+#include "pipeline/pipeline.h"
+#include "task.h"
+
+namespace vitruvian::wasm {
+
+/// A file that the page put into our memory; freed with free().
+class Buffer {
+ public:
+  Buffer() = default;
+  Buffer(std::byte* data, std::size_t size) : data_(data), size_(size) {}
+  Buffer(Buffer&& other) noexcept;
+  Buffer& operator=(Buffer&& other) noexcept;
+  ~Buffer();
+
+  std::span<const std::byte> bytes() const { return {data_, size_}; }
+
+ private:
+  std::byte* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// Values are known to web/src/worker/core.ts.
+enum class ModelPart { body = 0, prior = 1, landmarks = 2 };
+
+/// What the page's worker holds: models, one scan, and what was found in it. Results of a task are described
+/// by JSON in which an array is `[address, number of elements]`; it stays valid until the next task starts.
+class Session {
+ public:
+  explicit Session(int threads) : task_(threads) {}
+  ~Session();
+
+  Task& task() { return task_; }
+
+  /// Reads a model file. @throws Error(bad_model).
+  void load(ModelPart part, const Buffer& file, const std::string& name);
+
+  /// Starts to read a scan; replaces the one before and all that was found in it.
+  void open(Buffer file, std::string name);
+  /// `{"vertices", "faces", "decimated", "origin", "notes", "positions", "indices"}` of the scan that was
+  /// opened.
+  std::string scan_report() const;
+
+  /// Starts to register the opened scan. The task ends at the first network request, or with the result.
+  /// @param settings  JSON with the names and values of the command line; what is missing keeps its default.
+  /// @throws Error(usage).
+  void begin(const std::string& settings);
+  /// `{"network", "inputs": [array...]}`, or null when the registration is done.
+  std::string request_report() const;
+  /// Memory for `size` floats that answer output `output` of input `input`; outputs in their order.
+  float* reply_buffer(std::size_t input, std::size_t output, std::size_t size);
+  /// Hands the reply to the pipeline and goes on until the next request or the result.
+  void resume();
+
+  /// `{"registration", "body", "faces", "errors_mm", "height_m", "views"}` of the registration that was done.
+  std::string result_report() const;
+  /// `{"files": [{"name", "data"}]}`: what the command line writes, with the mesh as "ply", "obj" or "glb".
+  std::string files_report(const std::string& mesh_format);
+
+ private:
+  void advance();
+  void keep_result();
+
+  Task task_;
+  Models models_;
+  std::optional<Scan> scan_;
+  double read_ms_ = 0;
+  DecimatedMesh shown_;  ///< for the view, relative to the scan's origin
+
+  std::unique_ptr<RegistrationPipeline> pipeline_;
+  std::optional<NetworkRequest> request_;
+  NetworkReply reply_;
+  std::optional<Registration> registration_;
+  Points3f body_vertices_;  ///< registered, body frame
+  double height_m_ = 0;     ///< extent of the scan along the body's up
+  std::vector<std::string> files_;
+};
+
+}  // namespace vitruvian::wasm

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "geometry/mesh.h"
+#include "io/scan.h"
+#include "keypoints/network.h"
+#include "pipeline/landmark_stage.h"
+#include "pipeline/settings.h"
+
+namespace vitruvian::wasm {
+
+/// `[address, number of elements]` of an array in the module's memory.
+nlohmann::json array_reference(const void* data, std::ptrdiff_t elements);
+
+nlohmann::json describe_scan(const Scan& scan, const DecimatedMesh& shown);
+nlohmann::json describe_request(const NetworkRequest& request);
+/// The pictures and the landmarks in them: `[{"width", "height", "rgb", "landmarks": [{"x", "y",
+/// "confidence"}]}]`.
+nlohmann::json describe_views(const LandmarkStage& stage);
+
+/// @throws Error(usage) naming what is wrong.
+Settings parse_settings(const std::string& text);
+
+std::string text_of(const nlohmann::json& json);
+
+}  // namespace vitruvian::wasm
