@@ -1,0 +1,38 @@
+// Typed messages between the page and the worker that holds the core.
+import type { ErrorCode, OutputFile, ResultData, ScanData, Settings } from "./types";
+
+export interface CoreInfo {
+  version: string;
+  threads: number;
+}
+
+/** Every request with its arguments and its answer. */
+export interface Calls {
+  /** Loads the core; `threads` = 1 loads the build without threads. */
+  start: { args: { base: string; threads: number }; result: CoreInfo };
+  open: { args: { file: Blob; name: string }; result: ScanData };
+  /** Registers the opened scan. */
+  run: { args: { settings: Settings }; result: ResultData };
+  /** Ends the `run` under way, which then fails with code "cancelled". */
+  cancel: { args: Record<string, never>; result: null };
+  /** Files of the last result as the command line writes them. */
+  files: { args: { format: "ply" | "obj" | "glb" }; result: OutputFile[] };
+  /** Bytes of memory that the core holds. */
+  memory: { args: Record<string, never>; result: { heap: number } };
+}
+
+export type Kind = keyof Calls;
+
+export type Request = { [K in Kind]: { id: number; kind: K; args: Calls[K]["args"] } }[Kind];
+
+export interface Progress {
+  /** a stage of the core (read, align, project, detect, pose, fit, refine) or words for the user */
+  stage: string;
+  /** 0..1, or null when unknown */
+  fraction: number | null;
+}
+
+export type Reply =
+  | { id: number; ok: true; value: unknown }
+  | { id: number; ok: false; error: { code: ErrorCode; message: string } }
+  | { progress: Progress };

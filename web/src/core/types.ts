@@ -1,0 +1,171 @@
+// What crosses between the page and the core. JSON types follow the outside contract of registration.json.
+
+/** A 4x4 as four rows of four. */
+export type Matrix = readonly (readonly number[])[];
+export type Vec3 = readonly [number, number, number];
+
+export type Unit = "m" | "cm" | "mm" | "in";
+export type Axis = "x" | "y" | "z" | "-x" | "-y" | "-z";
+export type Gender = "neutral" | "female" | "male";
+
+/** What decides a registration besides the scan and the models. */
+export interface Settings {
+  method: "ours" | "paper" | "paper-cpu";
+  gender: Gender;
+  unit: Unit | "auto";
+  up: Axis | "auto";
+  front: Axis | "auto";
+  detail: "off" | "vertex";
+  seed: number;
+}
+
+export const defaultSettings: Settings = {
+  method: "ours",
+  gender: "neutral",
+  unit: "auto",
+  up: "auto",
+  front: "auto",
+  detail: "off",
+  seed: 1,
+};
+
+export interface Statistics {
+  count: number;
+  mean_mm: number | null;
+  std_mm: number | null;
+  median_mm: number | null;
+  p95_mm: number | null;
+  max_mm: number | null;
+}
+
+export interface SegmentRow extends Omit<Statistics, "count"> {
+  segment: string;
+  observed: number;
+  count: number | null;
+}
+
+export interface SurfaceError {
+  segments: SegmentRow[];
+  all: Statistics;
+  surface_segments: SegmentRow[];
+  surface_all: Statistics;
+  scan_to_model: Pick<Statistics, "mean_mm" | "median_mm" | "p95_mm" | "max_mm">;
+}
+
+export interface Verdict {
+  status: "ok" | "doubtful" | "failed";
+  confidence: number;
+  reasons: string[];
+}
+
+export interface Keypoint {
+  joint: string;
+  position_m: Vec3 | null;
+  confidence: number;
+  source: "detected" | "derived" | "user" | "none";
+}
+
+export interface Alignment {
+  body_from_scan: Matrix;
+  canonical_from_body: Matrix;
+  up: string;
+  front: string;
+  method: string;
+}
+
+/** registration.json */
+export interface Registration {
+  vitruvian: string;
+  scan: {
+    file: string;
+    sha256: string;
+    vertices: number;
+    faces: number;
+    unit: Unit;
+    metres_per_unit: number;
+  };
+  model: { name: string; gender: Gender; vertices: number; faces: number; betas: number; joints: number };
+  alignment: Alignment | null;
+  keypoints: Keypoint[];
+  parameters: { betas: number[]; pose: number[]; translation_m: Vec3 } | null;
+  joints: { name: string; body_m: Vec3; scan: Vec3 }[];
+  surface_error: SurfaceError | null;
+  verdict: Verdict;
+  timing_ms: Record<string, number>;
+  settings: Record<string, unknown>;
+}
+
+/** Stable names of core/base/error.h, and those that only the page knows. */
+export type ErrorCode =
+  | "usage"
+  | "not_available"
+  | "unsupported_format"
+  | "bad_file"
+  | "no_geometry"
+  | "bad_model"
+  | "cannot_read"
+  | "cannot_write"
+  | "cancelled"
+  | "internal"
+  | "network"
+  | "out_of_memory";
+
+export class CoreError extends Error {
+  constructor(
+    readonly code: ErrorCode,
+    message: string,
+  ) {
+    super(message);
+    this.name = "CoreError";
+  }
+}
+
+/** A mesh, or a bare point cloud when `indices` is empty. */
+export interface Mesh {
+  /** xyz triples */
+  positions: Float32Array;
+  indices: Uint32Array;
+}
+
+/** An opened scan. `mesh` is in scan units along the scan's axes and may be a decimated copy. */
+export interface ScanData {
+  file: string;
+  bytes: number;
+  vertices: number;
+  faces: number;
+  decimated: boolean;
+  /** scan frame; `mesh` is relative to it, so that its single precision is enough */
+  origin: Vec3;
+  /** what was repaired or left out */
+  notes: string[];
+  mesh: Mesh;
+}
+
+/** One rendered view with what the network saw in it. */
+export interface ViewData {
+  width: number;
+  height: number;
+  /** height x width x 3 */
+  rgb: Uint8Array;
+  landmarks: { x: number; y: number; confidence: number }[];
+}
+
+export interface ResultData {
+  registration: Registration;
+  /** registered vertices, body frame, metres; empty when failed */
+  body: Mesh;
+  /** a vertex of `body`, to the scan's surface; empty when failed */
+  vertexErrorMm: Float32Array;
+  /** extent of the scan along the body's up, metres */
+  height_m: number;
+  /** the pictures that the keypoints were found in */
+  views: ViewData[];
+}
+
+export interface OutputFile {
+  name: string;
+  data: Uint8Array;
+}
+
+export const kStages = ["scan", "align", "keypoints", "pose", "register", "results"] as const;
+export type Stage = (typeof kStages)[number];

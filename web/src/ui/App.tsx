@@ -1,0 +1,114 @@
+import { useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { kStages } from "../core/types";
+import { cancel, openFile, register } from "./actions";
+import { About, Help } from "./Dialogs";
+import { Header } from "./Header";
+import { Inspector } from "./Inspector";
+import { StageRail } from "./StageRail";
+import * as state from "./state";
+import { ViewPane } from "./ViewPane";
+
+/** Elements in which letters are typed or that use the keys themselves. */
+const TYPING = "input, select, textarea, dialog";
+
+export function App() {
+  const picker = useRef<HTMLInputElement>(null);
+  const dragged = useSignal(false);
+  const pick = () => picker.current?.click();
+
+  useEffect(() => {
+    const onKeyDown = (event: KeyboardEvent) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.key === "Escape") return state.busy.value ? cancel() : undefined;
+      if ((event.target as HTMLElement).closest(TYPING)) return;
+      const stage = kStages[Number(event.key) - 1];
+      if (stage) state.stage.value = stage;
+      else if (event.key === "o") pick();
+      else if (event.key === "r") void register();
+      else if (event.key === "?") state.helpOpen.value = true;
+      else return;
+      event.preventDefault();
+    };
+    addEventListener("keydown", onKeyDown);
+    return () => removeEventListener("keydown", onKeyDown);
+  }, []);
+
+  useEffect(() => {
+    let depth = 0;
+    const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes("Files") ?? false;
+    const onEnter = (event: DragEvent) => {
+      if (!hasFiles(event)) return;
+      depth += 1;
+      dragged.value = true;
+    };
+    const onLeave = () => {
+      depth = Math.max(depth - 1, 0);
+      if (depth === 0) dragged.value = false;
+    };
+    const onOver = (event: DragEvent) => {
+      if (hasFiles(event)) event.preventDefault();
+    };
+    const onDrop = (event: DragEvent) => {
+      if (!hasFiles(event)) return;
+      event.preventDefault();
+      depth = 0;
+      dragged.value = false;
+      const file = event.dataTransfer?.files[0];
+      if (file) void openFile(file, file.name);
+    };
+    addEventListener("dragenter", onEnter);
+    addEventListener("dragleave", onLeave);
+    addEventListener("dragover", onOver);
+    addEventListener("drop", onDrop);
+    return () => {
+      removeEventListener("dragenter", onEnter);
+      removeEventListener("dragleave", onLeave);
+      removeEventListener("dragover", onOver);
+      removeEventListener("drop", onDrop);
+    };
+  }, [dragged]);
+
+  return (
+    <>
+      <Header />
+      <main>
+        <StageRail />
+        <ViewPane />
+        <Inspector pick={pick} />
+      </main>
+      <input
+        ref={picker}
+        class="hidden"
+        type="file"
+        aria-label="Scan file"
+        tabIndex={-1}
+        onChange={(event) => {
+          const file = event.currentTarget.files?.[0];
+          event.currentTarget.value = "";
+          if (file) void openFile(file, file.name);
+        }}
+      />
+      {dragged.value && <div class="drop-here">Drop the scan anywhere</div>}
+      <Announcer />
+      {state.aboutOpen.value && <About />}
+      {state.helpOpen.value && <Help />}
+    </>
+  );
+}
+
+/** Says progress and outcomes to screen readers. */
+function Announcer() {
+  const busy = state.busy.value;
+  const verdict = state.result.value?.registration.verdict;
+  const text = busy
+    ? `Working: ${state.progress.value?.stage ?? busy.stage}`
+    : verdict
+      ? `Verdict: ${verdict.status}`
+      : "";
+  return (
+    <p class="unseen" role="status">
+      {text}
+    </p>
+  );
+}

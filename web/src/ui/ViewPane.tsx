@@ -1,0 +1,131 @@
+import { useSignal, useSignalEffect } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { millimetres } from "../result/format";
+import type { Direction, Viewer } from "../viewer/viewer";
+import { Legend } from "./Legend";
+import * as state from "./state";
+import { isDark } from "./theme";
+
+const TURN = Math.PI / 24;
+const SIDES: [Direction, string][] = [
+  ["front", "Front"],
+  ["left", "Left"],
+  ["back", "Back"],
+  ["right", "Right"],
+  ["top", "Top"],
+];
+
+/** The 3D view with its toolbar and legend. three.js is loaded when the first scan is opened. */
+export function ViewPane() {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const viewer = useSignal<Viewer | null>(null);
+  const failed = useSignal("");
+  const wanted = state.scan.value !== null;
+
+  useEffect(() => {
+    if (!wanted || viewer.peek()) return;
+    let live = true;
+    import("../viewer/viewer")
+      .then(({ Viewer }) => {
+        if (live && canvas.current) viewer.value = new Viewer(canvas.current);
+      })
+      .catch((error: unknown) => {
+        failed.value = error instanceof Error ? error.message : String(error);
+      });
+    return () => {
+      live = false;
+    };
+  }, [wanted, viewer, failed]);
+  useEffect(() => () => viewer.peek()?.dispose(), [viewer]);
+
+  useSignalEffect(() => viewer.value?.setScan(state.scan.value));
+  useSignalEffect(() => {
+    const matrix = state.result.value?.registration.alignment?.body_from_scan ?? null;
+    if (!viewer.value || !state.scan.value) return;
+    viewer.value.setBodyFromScan(matrix);
+    viewer.value.look("front");
+  });
+  useSignalEffect(() => {
+    const result = state.result.value;
+    viewer.value?.setBody(result?.body ?? null, result?.vertexErrorMm ?? null);
+  });
+  useSignalEffect(() => {
+    const registration = state.stage.value === "keypoints" ? state.result.value?.registration : undefined;
+    viewer.value?.setKeypoints(registration?.keypoints ?? []);
+  });
+  useSignalEffect(() => {
+    const registration = state.stage.value === "pose" ? state.result.value?.registration : undefined;
+    viewer.value?.setSkeleton(registration?.joints.map(({ body_m }) => body_m) ?? []);
+  });
+  useSignalEffect(() => viewer.value?.setOptions(state.shownView.value, state.legend.value));
+  useSignalEffect(() => viewer.value?.setDark(isDark.value));
+
+  const onKeyDown = (event: KeyboardEvent) => {
+    const view = viewer.peek();
+    if (!view || event.ctrlKey || event.metaKey || event.altKey) return;
+    const keys: Record<string, () => void> = {
+      ArrowLeft: () => view.orbit(-TURN, 0),
+      ArrowRight: () => view.orbit(TURN, 0),
+      ArrowUp: () => view.orbit(0, TURN),
+      ArrowDown: () => view.orbit(0, -TURN),
+      "+": () => view.zoom(1.15),
+      "=": () => view.zoom(1.15),
+      "-": () => view.zoom(1 / 1.15),
+      f: () => view.fit(),
+    };
+    const action = keys[event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  };
+
+  const probe = useSignal("");
+  const onPointerMove = (event: PointerEvent) => {
+    if (event.buttons !== 0 || !state.result.value) return;
+    const hit = viewer.peek()?.pick(event.offsetX, event.offsetY);
+    const error = hit?.what === "body" ? state.result.value.vertexErrorMm[hit.vertex] : undefined;
+    probe.value = error === undefined ? "" : `${millimetres(error)} mm from the scan here`;
+  };
+
+  return (
+    <section class="view" aria-label="3D view">
+      <canvas
+        ref={canvas}
+        tabIndex={0}
+        aria-label="Scan and body. Arrow keys turn, plus and minus zoom, F shows everything."
+        onKeyDown={onKeyDown}
+        onPointerMove={onPointerMove}
+      />
+      {failed.value && (
+        <p class="view-note" role="alert">
+          The 3D view could not start ({failed.value}). Registration works without it; switch on hardware
+          acceleration or WebGL to see it.
+        </p>
+      )}
+      {wanted && (
+        <div class="view-tools" role="toolbar" aria-label="View">
+          {SIDES.map(([direction, name]) => (
+            <button type="button" key={direction} onClick={() => viewer.value?.look(direction)}>
+              {name}
+            </button>
+          ))}
+          <button type="button" onClick={() => viewer.value?.fit()} title="Show everything (F)">
+            Fit
+          </button>
+        </div>
+      )}
+      {state.result.value && state.shownView.value.showBody && state.view.value.heatMap && <Legend />}
+      {probe.value && <p class="probe">{probe.value}</p>}
+      <BusyNote />
+    </section>
+  );
+}
+
+function BusyNote() {
+  if (!state.busy.value) return null;
+  return (
+    <p class="view-note busy" aria-hidden="true">
+      {state.doing.value}…
+    </p>
+  );
+}

@@ -1,0 +1,278 @@
+// Typed view of the WASM module: the only place that knows its entry points.
+import {
+  CoreError,
+  type ErrorCode,
+  type OutputFile,
+  type Registration,
+  type Settings,
+  type ViewData,
+} from "../core/types";
+import { load } from "./load";
+import type { Network } from "./networks";
+
+/** Values of TaskState in wasm/task.h. */
+const WORKING = 1;
+const FAILED = 3;
+/** Between two looks at a task that works on its own thread. */
+const POLL_MS = 25;
+
+/** A zero-terminated text in the module's memory; 0 when the call failed. */
+type Text = number;
+
+interface Module {
+  HEAPU8: Uint8Array;
+  onProgress?: (stage: string, fraction: number) => void;
+  _malloc(size: number): number;
+  _free(address: number): void;
+  _vitruvian_version(): Text;
+  _vitruvian_has_threads(): number;
+  _vitruvian_last_error(): Text;
+  _vitruvian_create(threads: number): number;
+  _vitruvian_open(data: number, size: number, name: Text): number;
+  _vitruvian_task_state(): number;
+  _vitruvian_task_progress(): Text;
+  _vitruvian_task_error(): Text;
+  _vitruvian_cancel(): void;
+  _vitruvian_scan_report(): Text;
+  _vitruvian_load_model(part: number, data: number, size: number, name: Text): number;
+  _vitruvian_begin(settings: Text): number;
+  _vitruvian_request_report(): Text;
+  _vitruvian_reply_buffer(input: number, output: number, size: number): number;
+  _vitruvian_resume(): number;
+  _vitruvian_result_report(): Text;
+  _vitruvian_files_report(format: Text): Text;
+}
+
+/** Files of ModelPart in wasm/session.h, in its order. */
+const MODEL_FILES = ["body.vbm", "pose_prior.vpp", "landmarks.json"] as const;
+
+/** `[address, number of elements]` in the module's memory. */
+export type ArrayReference = [number, number];
+
+export interface ScanReport {
+  vertices: number;
+  faces: number;
+  decimated: boolean;
+  origin: [number, number, number];
+  notes: string[];
+  positions: ArrayReference;
+  indices: ArrayReference;
+}
+
+interface NetworkRequest {
+  network: Network;
+  inputs: ArrayReference[];
+}
+
+export interface ResultReport {
+  registration: Registration;
+  body: ArrayReference;
+  faces: ArrayReference;
+  errors_mm: ArrayReference;
+  height_m: number;
+  views: { width: number; height: number; rgb: ArrayReference; landmarks: ViewData["landmarks"] }[];
+}
+
+export type RunNetwork = (network: Network, input: Float32Array) => Promise<Float32Array[]>;
+
+export class Core {
+  private cancelled = false;
+  onProgress: (stage: string, fraction: number | null) => void = () => {};
+
+  private constructor(
+    private readonly module: Module,
+    readonly threads: number,
+  ) {}
+
+  /** Loads the build that fits `threads` from `base`/wasm. @throws CoreError(network) */
+  static async load(base: string, threads: number): Promise<Core> {
+    const folder = new URL(`wasm/${threads > 1 ? "threads" : "single"}/`, base);
+    const module: Module = await import(/* @vite-ignore */ new URL("vitruvian.mjs", folder).href)
+      .then(({ default: create }) => create())
+      .catch((error: unknown) => {
+        throw new CoreError("network", `the core could not be loaded: ${error}`);
+      });
+    const core = new Core(module, module._vitruvian_has_threads() ? threads : 1);
+    module.onProgress = (stage, fraction) => core.report(stage, fraction);
+    core.check(module._vitruvian_create(core.threads));
+    return core;
+  }
+
+  version(): string {
+    return this.text(this.module._vitruvian_version());
+  }
+
+  /** Bytes of the module's memory. */
+  heap(): number {
+    return this.module.HEAPU8.byteLength;
+  }
+
+  cancel(): void {
+    this.cancelled = true;
+    this.module._vitruvian_cancel();
+  }
+
+  /** Streams the file into the module's memory and reads it there. */
+  async open(file: Blob, name: string): Promise<ScanReport> {
+    const address = await this.store(file);
+    this.withText(name, (title) => this.check(this.module._vitruvian_open(address, file.size, title)));
+    await this.finished();
+    return this.json<ScanReport>(this.module._vitruvian_scan_report());
+  }
+
+  /** Loads the models from `base`/models. @throws CoreError(network | bad_model) */
+  async loadModels(base: string): Promise<void> {
+    for (const [part, name] of MODEL_FILES.entries()) {
+      const bytes = await load(new URL(`models/${name}`, base), (fraction) =>
+        this.onProgress("Loading the body model", fraction),
+      );
+      const address = this.allocate(bytes.length);
+      this.module.HEAPU8.set(bytes, address);
+      this.withText(name, (title) =>
+        this.check(this.module._vitruvian_load_model(part, address, bytes.length, title)),
+      );
+    }
+  }
+
+  /** Registers the opened scan. @throws CoreError */
+  async register(settings: Settings, runNetwork: RunNetwork): Promise<ResultReport> {
+    this.cancelled = false;
+    this.withText(JSON.stringify(settings), (text) => this.check(this.module._vitruvian_begin(text)));
+    for (;;) {
+      await this.finished();
+      const request = this.json<NetworkRequest | null>(this.module._vitruvian_request_report());
+      if (!request) break;
+      await this.answer(request, runNetwork);
+      this.check(this.module._vitruvian_resume());
+    }
+    return this.json<ResultReport>(this.module._vitruvian_result_report());
+  }
+
+  /** What the command line writes. */
+  files(meshFormat: string): OutputFile[] {
+    const report = this.withText(meshFormat, (text) =>
+      this.json<{ files: { name: string; data: ArrayReference }[] }>(
+        this.module._vitruvian_files_report(text),
+      ),
+    );
+    return report.files.map(({ name, data: [address, size] }) => ({ name, data: this.bytes(address, size) }));
+  }
+
+  private async answer({ network, inputs }: NetworkRequest, runNetwork: RunNetwork): Promise<void> {
+    for (const [i, input] of inputs.entries()) {
+      this.checkCancelled();
+      const outputs = await runNetwork(network, this.floats(input));
+      for (const [j, output] of outputs.entries()) {
+        const address = this.check(this.module._vitruvian_reply_buffer(i, j, output.length)) >>> 0;
+        this.module.HEAPU8.set(new Uint8Array(output.buffer, output.byteOffset, output.byteLength), address);
+      }
+    }
+    this.checkCancelled();
+  }
+
+  private checkCancelled(): void {
+    if (this.cancelled) throw new CoreError("cancelled", "cancelled");
+  }
+
+  /** Text of a call that succeeded, parsed. */
+  private json<T>(address: Text): T {
+    return JSON.parse(this.text(this.check(address)));
+  }
+
+  /** Calls with a text in the module's memory, and frees it. */
+  private withText<T>(text: string, call: (address: Text) => T): T {
+    const address = this.storeText(text);
+    try {
+      return call(address);
+    } finally {
+      this.module._free(address);
+    }
+  }
+
+  /** A copy of an array of the last report. */
+  floats([address, length]: ArrayReference): Float32Array<ArrayBuffer> {
+    return new Float32Array(this.bytes(address, length * 4).buffer);
+  }
+
+  /** A copy of an array of the last report. */
+  integers([address, length]: ArrayReference): Uint32Array {
+    return new Uint32Array(this.bytes(address, length * 4).buffer);
+  }
+
+  /** A copy of a text's or picture's bytes of the last report. */
+  octets([address, length]: ArrayReference): Uint8Array<ArrayBuffer> {
+    return this.bytes(address, length);
+  }
+
+  /** A copy, never shared, of a piece of the module's memory. */
+  private bytes(address: number, size: number): Uint8Array<ArrayBuffer> {
+    const copy = new Uint8Array(size);
+    // HEAPU8 is read anew each time: the module replaces it when its memory grows.
+    copy.set(this.module.HEAPU8.subarray(address, address + size));
+    return copy;
+  }
+
+  private async store(file: Blob): Promise<number> {
+    const address = this.allocate(file.size);
+    try {
+      let offset = 0;
+      const reader = file.stream().getReader();
+      for (;;) {
+        const { done, value } = await reader.read();
+        if (done) break;
+        this.module.HEAPU8.set(value, address + offset);
+        offset += value.length;
+        this.onProgress("Loading the scan", offset / file.size);
+      }
+      return address;
+    } catch (error) {
+      this.module._free(address);
+      throw new CoreError("cannot_read", String(error));
+    }
+  }
+
+  private storeText(text: string): number {
+    const encoded = new TextEncoder().encode(`${text}\0`);
+    const address = this.allocate(encoded.length);
+    this.module.HEAPU8.set(encoded, address);
+    return address;
+  }
+
+  private allocate(size: number): number {
+    const address = this.module._malloc(Math.max(size, 1)) >>> 0;
+    if (address === 0) throw new CoreError("out_of_memory", `no memory for ${size} bytes`);
+    return address;
+  }
+
+  private text(address: Text): string {
+    const heap = this.module.HEAPU8;
+    return new TextDecoder().decode(this.bytes(address, heap.indexOf(0, address) - address));
+  }
+
+  /** @throws CoreError when a call returned 0. */
+  private check(returned: number): number {
+    if (returned === 0) throw this.error(this.module._vitruvian_last_error());
+    return returned;
+  }
+
+  private error(address: Text): CoreError {
+    const { code, message } = JSON.parse(this.text(address)) as { code: ErrorCode; message: string };
+    return new CoreError(code, message);
+  }
+
+  /** Waits for the task under way. */
+  private async finished(): Promise<void> {
+    for (;;) {
+      const state = this.module._vitruvian_task_state();
+      if (state === FAILED) throw this.error(this.check(this.module._vitruvian_task_error()));
+      if (state !== WORKING) return;
+      const { stage, fraction } = JSON.parse(this.text(this.check(this.module._vitruvian_task_progress())));
+      if (stage) this.report(stage, fraction);
+      await new Promise((resolve) => setTimeout(resolve, POLL_MS));
+    }
+  }
+
+  private report(stage: string, fraction: number): void {
+    this.onProgress(stage, fraction < 0 ? null : fraction);
+  }
+}

@@ -1,0 +1,110 @@
+// The worker: holds the core and the networks, answers the page's calls one after the other (a cancel at once).
+import type { Calls, Kind, Reply, Request } from "../core/messages";
+import { CoreError, type ResultData, type ScanData } from "../core/types";
+import { Core } from "./core";
+import type { Networks } from "./networks";
+
+const scope = self as unknown as {
+  postMessage(message: Reply, transfer?: Transferable[]): void;
+  onmessage: (event: MessageEvent<Request>) => void;
+};
+
+type Handlers = { [K in Kind]: (args: Calls[K]["args"]) => Promise<Calls[K]["result"]> };
+
+let core: Core | null = null;
+let networks: Networks | null = null;
+let base = "";
+let modelsLoaded = false;
+
+function theCore(): Core {
+  if (!core) throw new CoreError("internal", "the core was not started");
+  return core;
+}
+
+async function theNetworks(threads: number): Promise<Networks> {
+  if (!networks) {
+    const { Networks } = await import("./networks");
+    networks = new Networks(base, threads, tell);
+  }
+  return networks;
+}
+
+function tell(stage: string, fraction: number | null): void {
+  scope.postMessage({ progress: { stage, fraction } });
+}
+
+const handlers: Handlers = {
+  async start(args) {
+    tell("Loading the program", null);
+    base = args.base;
+    core = await Core.load(base, args.threads);
+    core.onProgress = tell;
+    return { version: core.version(), threads: core.threads };
+  },
+
+  async open({ file, name }): Promise<ScanData> {
+    const report = await theCore().open(file, name);
+    return {
+      file: name,
+      bytes: file.size,
+      vertices: report.vertices,
+      faces: report.faces,
+      decimated: report.decimated,
+      origin: report.origin,
+      notes: report.notes,
+      mesh: { positions: theCore().floats(report.positions), indices: theCore().integers(report.indices) },
+    };
+  },
+
+  async run({ settings }): Promise<ResultData> {
+    const core = theCore();
+    if (!modelsLoaded) await core.loadModels(base);
+    modelsLoaded = true;
+    const runner = await theNetworks(core.threads);
+    const report = await core.register(settings, (network, input) => runner.run(network, input));
+    return {
+      registration: report.registration,
+      height_m: report.height_m,
+      body: { positions: core.floats(report.body), indices: core.integers(report.faces) },
+      vertexErrorMm: core.floats(report.errors_mm),
+      views: report.views.map((view) => ({ ...view, rgb: core.octets(view.rgb) })),
+    };
+  },
+
+  async cancel() {
+    theCore().cancel();
+    return null;
+  },
+
+  async files({ format }) {
+    return theCore().files(format);
+  },
+
+  async memory() {
+    return { heap: theCore().heap() };
+  },
+};
+
+/** The buffers of an answer, so that they move instead of being copied. */
+function transferables(value: unknown, found: Transferable[] = []): Transferable[] {
+  if (ArrayBuffer.isView(value)) found.push(value.buffer as ArrayBuffer);
+  else if (value && typeof value === "object")
+    for (const each of Object.values(value)) transferables(each, found);
+  return found;
+}
+
+function toCoreError(error: unknown): CoreError {
+  if (error instanceof CoreError) return error;
+  if (error instanceof RangeError) return new CoreError("out_of_memory", error.message);
+  return new CoreError("internal", error instanceof Error ? error.message : String(error));
+}
+
+scope.onmessage = async ({ data: { id, kind, args } }) => {
+  try {
+    const value = await (handlers[kind] as (args: unknown) => Promise<unknown>)(args);
+    scope.postMessage({ id, ok: true, value }, transferables(value));
+  } catch (error) {
+    const { code, message } = toCoreError(error);
+    scope.postMessage({ id, ok: false, error: { code, message } });
+  }
+};
