@@ -67,7 +67,7 @@ bool is_off_header(std::string_view word) {
 
 bool is_number(std::string_view word) {
   while (!word.empty() && (word.back() == ',' || word.back() == ';')) word.remove_suffix(1);
-  TextCursor inside(std::as_bytes(std::span(word)));
+  TextCursor inside(word);
   return !word.empty() && word.find_first_of("0123456789") != std::string_view::npos &&
          word.find_first_not_of("0123456789+-.,;eE") == std::string_view::npos;
 }
@@ -80,7 +80,7 @@ TextKind kind_of_text(TextCursor cursor) {
   for (int n = 0; n < 2000 && !cursor.at_end(); ++n) {
     const std::string_view line = cursor.take_line();
     if (line.empty() || line[0] == '#' || line[0] == '%' || line.substr(0, 2) == "//") continue;
-    TextCursor words(std::as_bytes(std::span(line)));
+    TextCursor words(line);
     const std::string_view first = words.take_word();
     if (is_number(first)) {
       ++numeric;

@@ -34,7 +34,7 @@ struct Header {
 }
 
 std::vector<std::string> words_of(std::string_view line) {
-  TextCursor cursor(std::as_bytes(std::span(line)));
+  TextCursor cursor(line);
   std::vector<std::string> words;
   for (std::string_view word = cursor.take_word(); !word.empty(); word = cursor.take_word())
     words.emplace_back(word);
@@ -42,7 +42,7 @@ std::vector<std::string> words_of(std::string_view line) {
 }
 
 std::uint64_t to_count(const std::string& word, const TextCursor& cursor) {
-  TextCursor inside(std::as_bytes(std::span(word)));
+  TextCursor inside(word);
   const auto count = inside.take_integer();
   if (!count || *count < 0 || !inside.at_end())
     fail(cursor, "'" + word.substr(0, 40) + "' in the PCD header is not a count");

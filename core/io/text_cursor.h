@@ -13,6 +13,8 @@ namespace vitruvian {
 class TextCursor {
  public:
   explicit TextCursor(std::span<const std::byte> bytes);
+  explicit TextCursor(std::string_view text)
+      : TextCursor(std::as_bytes(std::span(text.data(), text.size()))) {}
 
   bool at_end() const { return position_ == end_; }
   /// True at a line's end or the text's.

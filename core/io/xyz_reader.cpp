@@ -52,7 +52,7 @@ Row take_row(TextCursor& cursor, const Layout& layout) {
       std::string word(cursor.take_word());
       while (!word.empty() && word.back() == ';') word.pop_back();
       std::replace(word.begin(), word.end(), ',', '.');
-      TextCursor inside(std::as_bytes(std::span(word)));
+      TextCursor inside(word);
       number = inside.take_number();
       if (!inside.at_end()) number.reset();
     } else {
@@ -74,7 +74,7 @@ Layout find_separators(TextCursor cursor) {
   for (std::size_t n = 0; n < kLinesLookedAt && !cursor.at_end(); ++n) {
     const std::string_view line = cursor.take_line();
     if (is_comment(line) || line.find_first_of("0123456789") == std::string_view::npos) continue;
-    TextCursor inside(std::as_bytes(std::span(line)));
+    TextCursor inside(line);
     std::size_t words = 0, commas = 0;
     for (std::string_view word = inside.take_word(); !word.empty(); word = inside.take_word()) {
       while (!word.empty() && word.back() == ';') word.remove_suffix(1);
