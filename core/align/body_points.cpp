@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "base/random.h"
+#include "geometry/kdtree.h"
 
 namespace vitruvian {
 namespace {
@@ -19,7 +20,6 @@ struct Grid {
   double cell = 1;
   Vec3d origin = Vec3d::Zero();
   std::unordered_map<std::uint64_t, int> index;
-  std::vector<Eigen::Vector3i> place;
   std::vector<Vec3d> mean;
   std::vector<int> cell_of_point;  ///< -1 for points that are not finite
 
@@ -67,7 +67,6 @@ Grid make_grid(const Points3f& vertices) {
     const Eigen::Vector3i place = scaled.array().floor().cast<int>();
     const auto [entry, fresh] = grid.index.try_emplace(Grid::key(place), static_cast<int>(grid.mean.size()));
     if (fresh) {
-      grid.place.push_back(place);
       grid.mean.push_back(Vec3d::Zero());
       count.push_back(0);
     }
@@ -121,7 +120,7 @@ bool is_floor(const std::vector<Vec3d>& cells, Plane& plane, double thickness, d
 
 /// Largest floor-like plane among random triples of cells; its normal is zero when there is none.
 Plane find_floor(const std::vector<Vec3d>& cells, double cell) {
-  constexpr int kTrials = 400;
+  constexpr int kTrials = 300;
   const double thickness = 0.75 * cell, diagonal = kCellsAlongDiagonal * cell;
   if (cells.size() < 50) return {};
   Random random(1);
@@ -144,32 +143,62 @@ Plane find_floor(const std::vector<Vec3d>& cells, double cell) {
   return is_floor(cells, again, thickness, diagonal) ? again : best;
 }
 
-/// Number of each cell's connected group (26 neighbours of coarser cells), and the groups' sizes in cells; -1
-/// for cells left out.
+/// Number of each kept cell's connected group, and the groups' sizes in cells; -1 for cells left out. Cells
+/// are connected when nearer than three and a half cells, or than four times the usual distance in sparse
+/// scans.
 std::vector<int> groups_of(const Grid& grid, const std::vector<std::uint8_t>& kept, std::vector<int>& sizes) {
-  constexpr int kReach = 3;  // cells; gaps narrower than about three hundredths of the body do not part it
-  std::vector<int> group(grid.mean.size(), -1);
+  constexpr double kReachInCells = 3.5, kReachInSpacings = 4;
+  std::vector<int> group(grid.mean.size(), -1), used;
+  Points3f points(3, static_cast<Index>(grid.mean.size()));
+  for (std::size_t c = 0; c < grid.mean.size(); ++c) {
+    points.col(static_cast<Index>(c)) = (grid.mean[c] - grid.origin).cast<float>();
+    if (kept[c]) used.push_back(static_cast<int>(c));
+  }
+  if (used.size() < 2) {
+    for (const int c : used) group[c] = 0;
+    sizes.assign(used.size(), 1);
+    return group;
+  }
+  const KdTree tree(points, used);
+  std::vector<Neighbour> neighbours;
+  std::vector<float> spacings;
+  for (const int c : used) {
+    tree.nearest(points.col(c), 2, neighbours);
+    spacings.push_back(std::sqrt(neighbours.back().squared_distance));
+  }
+  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
+  std::nth_element(spacings.begin(), middle, spacings.end());
+  const auto reach = static_cast<float>(std::max(kReachInCells * grid.cell, kReachInSpacings * *middle));
+
+  std::vector<std::vector<int>> bridges(grid.mean.size());
+  for (Index f = 0; f < faces.cols(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = grid.cell_of_point[faces(k, f)], b = grid.cell_of_point[faces((k + 1) % 3, f)];
+      if (a < 0 || b < 0 || a == b || !kept[a] || !kept[b]) continue;
+      if (bridges[a].empty() || bridges[a].back() != b) bridges[a].push_back(b);
+      if (bridges[b].empty() || bridges[b].back() != a) bridges[b].push_back(a);
+    }
+  }
+
   std::vector<int> stack;
-  for (std::size_t seed = 0; seed < grid.mean.size(); ++seed) {
-    if (!kept[seed] || group[seed] >= 0) continue;
+  for (const int seed : used) {
+    if (group[seed] >= 0) continue;
     const int name = static_cast<int>(sizes.size());
     sizes.push_back(0);
-    stack.assign(1, static_cast<int>(seed));
+    stack.assign(1, seed);
     group[seed] = name;
     while (!stack.empty()) {
       const int here = stack.back();
       stack.pop_back();
       ++sizes[name];
-      for (int dz = -kReach; dz <= kReach; ++dz) {
-        for (int dy = -kReach; dy <= kReach; ++dy) {
-          for (int dx = -kReach; dx <= kReach; ++dx) {
-            const auto found = grid.index.find(Grid::key(grid.place[here] + Eigen::Vector3i(dx, dy, dz)));
-            if (found == grid.index.end() || !kept[found->second] || group[found->second] >= 0) continue;
-            group[found->second] = name;
-            stack.push_back(found->second);
-          }
-        }
-      }
+      tree.within(points.col(here), reach, neighbours);
+      const auto join = [&](int cell) {
+        if (group[cell] >= 0) return;
+        group[cell] = name;
+        stack.push_back(cell);
+      };
+      for (const Neighbour& neighbour : neighbours) join(neighbour.index);
+      for (const int cell : bridges[here]) join(cell);
     }
   }
   return group;
@@ -177,7 +206,7 @@ std::vector<int> groups_of(const Grid& grid, const std::vector<std::uint8_t>& ke
 
 }  // namespace
 
-BodyPoints find_body_points(const Points3f& vertices) {
+BodyPoints find_body_points(const Points3f& vertices, const Faces& faces) {
   constexpr double kSmallestPart = 0.03;  // of the largest group
   const Grid grid = make_grid(vertices);
   BodyPoints body;
@@ -191,7 +220,7 @@ BodyPoints find_body_points(const Points3f& vertices) {
     for (std::size_t c = 0; c < cell_kept.size(); ++c) cell_kept[c] = floor.height(grid.mean[c]) > clearance;
   }
   std::vector<int> sizes;
-  const std::vector<int> group = groups_of(grid, cell_kept, sizes);
+  const std::vector<int> group = groups_of(grid, faces, cell_kept, sizes);
   const int largest = sizes.empty() ? 0 : *std::max_element(sizes.begin(), sizes.end());
   for (std::size_t i = 0; i < body.keep.size(); ++i) {
     const int cell = grid.cell_of_point[i];
@@ -208,27 +237,60 @@ BodyPoints find_body_points(const Points3f& vertices) {
   return body;
 }
 
+DecimatedMesh only_body(const DecimatedMesh& mesh, const BodyPoints& body) {
+  DecimatedMesh result;
+  std::vector<int> renumbered(body.keep.size(), -1);
+  int count = 0;
+  for (std::size_t i = 0; i < body.keep.size(); ++i) {
+    if (body.keep[i]) renumbered[i] = count++;
+  }
+  result.vertices.resize(3, count);
+  result.normals.resize(3, mesh.normals.cols() > 0 ? count : 0);
+  for (std::size_t i = 0; i < body.keep.size(); ++i) {
+    if (renumbered[i] < 0) continue;
+    result.vertices.col(renumbered[i]) = mesh.vertices.col(static_cast<Index>(i));
+    if (mesh.normals.cols() > 0) result.normals.col(renumbered[i]) = mesh.normals.col(static_cast<Index>(i));
+    if (!mesh.source.empty()) result.source.push_back(mesh.source[i]);
+  }
+  result.faces.resize(3, mesh.faces.cols());
+  Index kept = 0;
+  for (Index f = 0; f < mesh.faces.cols(); ++f) {
+    const int a = renumbered[mesh.faces(0, f)], b = renumbered[mesh.faces(1, f)],
+              c = renumbered[mesh.faces(2, f)];
+    if (a >= 0 && b >= 0 && c >= 0) result.faces.col(kept++) << a, b, c;
+  }
+  result.faces.conservativeResize(3, kept);
+  return result;
+}
+
 double diameter(const Points3f& vertices, const BodyPoints& body) {
-  constexpr int kDirections = 300;
-  const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  double widest = 0;
+  constexpr int kDirections = 200;
+  constexpr std::size_t kMostPoints = 50000;
   std::vector<Vec3d> points;
   for (Index i = 0; i < vertices.cols(); ++i) {
     if (body.keep[i]) points.push_back(vertices.col(i).cast<double>());
   }
-  const std::size_t step = std::max<std::size_t>(1, points.size() / 50000);
+  if (points.empty()) return 0;
+  const std::size_t step = std::max<std::size_t>(1, points.size() / kMostPoints);
+  const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  std::vector<std::size_t> ends;
   for (int k = 0; k < kDirections; ++k) {
     const double z = (k + 0.5) / kDirections, r = std::sqrt(1 - z * z), angle = golden * k;
     const Vec3d direction(r * std::cos(angle), r * std::sin(angle), z);
-    double low = INFINITY, high = -INFINITY;
+    std::size_t lowest = 0, highest = 0;
     for (std::size_t i = 0; i < points.size(); i += step) {
       const double value = direction.dot(points[i]);
-      low = std::min(low, value);
-      high = std::max(high, value);
+      if (value < direction.dot(points[lowest])) lowest = i;
+      if (value > direction.dot(points[highest])) highest = i;
     }
-    widest = std::max(widest, high - low);
+    ends.push_back(lowest);
+    ends.push_back(highest);
   }
-  return std::isfinite(widest) ? widest : 0;
+  double widest = 0;
+  for (const std::size_t a : ends) {
+    for (const std::size_t b : ends) widest = std::max(widest, (points[a] - points[b]).norm());
+  }
+  return widest;
 }
 
 Vec3d centroid(const Points3f& vertices, const Faces& faces, const BodyPoints& body) {

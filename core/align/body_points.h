@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "geometry/mesh.h"
 
 namespace vitruvian {
 
@@ -17,9 +18,14 @@ struct BodyPoints {
 /// Leaves out stray points and a floor: a plane that holds a tenth or more of the surface, spreads wider than
 /// a pair of feet, and has (almost) everything else on one side. Judged by occupied cells of a grid, so
 /// uneven sampling does not matter. Any unit. Deterministic.
-BodyPoints find_body_points(const Points3f& vertices);
+/// @param faces  if there are any: what they connect is not parted.
+BodyPoints find_body_points(const Points3f& vertices, const Faces& faces = Faces(3, 0));
 
-/// Largest distance between two kept points, to about half a per cent. 0 when none is kept.
+/// The mesh or cloud without the points left out; a triangle that loses a corner goes too. `source` keeps its
+/// meaning.
+DecimatedMesh only_body(const DecimatedMesh& mesh, const BodyPoints& body);
+
+/// Largest distance between two kept points, to about a tenth of a per cent. 0 when none is kept.
 double diameter(const Points3f& vertices, const BodyPoints& body);
 
 /// Centre of the body, the origin of the body frame: area-weighted mean of the triangles with all corners
