@@ -144,9 +144,10 @@ Plane find_floor(const std::vector<Vec3d>& cells, double cell) {
 }
 
 /// Number of each kept cell's connected group, and the groups' sizes in cells; -1 for cells left out. Cells
-/// are connected when nearer than three and a half cells, or than four times the usual distance in sparse
-/// scans.
-std::vector<int> groups_of(const Grid& grid, const std::vector<std::uint8_t>& kept, std::vector<int>& sizes) {
+/// are connected by a triangle, or when nearer than three and a half cells, or than four times the usual
+/// distance in sparse scans.
+std::vector<int> groups_of(const Grid& grid, const Faces& faces, const std::vector<std::uint8_t>& kept,
+                           std::vector<int>& sizes) {
   constexpr double kReachInCells = 3.5, kReachInSpacings = 4;
   std::vector<int> group(grid.mean.size(), -1), used;
   Points3f points(3, static_cast<Index>(grid.mean.size()));
