@@ -173,13 +173,13 @@ TEST(TwoViews, VerticalComesFromTheFrontAndVisibilitiesCombine) {
   const auto truth = standing_person();
   Points3f points(3, kLandmarkCount);
   for (int l = 0; l < kLandmarkCount; ++l) points.col(l) = truth[l];
-  const auto [front, side] = paper_cameras(points, Framing());
-  auto views = seen_by(std::array{front, side}, truth);
-  views[1].landmarks[0].pixel.y() += 0.1f * side.pixels_per_metre;
+  const std::array<Camera, 2> cameras = paper_cameras(points, Framing());
+  auto views = seen_by(cameras, truth);
+  views[1].landmarks[0].pixel.y() += 0.1f * cameras[1].pixels_per_metre;
   views[0].landmarks[0].visibility = 0.9f;
   views[1].landmarks[0].visibility = 0.3f;
   const auto lift = [&](VisibilityRule rule, double threshold) {
-    return lift_two_views(front, views[0], side, views[1], rule, threshold)[0];
+    return lift_two_views(cameras[0], views[0], cameras[1], views[1], rule, threshold)[0];
   };
   const Landmark3d mean = lift(VisibilityRule::mean, 0.5);
   EXPECT_LT((mean.position - truth[0]).norm(), 1e-4);
