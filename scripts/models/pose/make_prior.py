@@ -150,7 +150,8 @@ def main():
     arrays["limit_low"], arrays["limit_high"] = limits(measured, made)
     arrays.update(limb_libraries(measured, made))
     arrays = {name: values.astype(np.float32) for name, values in arrays.items()}
-    metadata = {"data": "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu, funding NSF EIA-0196217), training "
+    metadata = {"split": "models/pose_split.json",
+                "data": "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu, funding NSF EIA-0196217), training "
                         "side of models/pose_split.json, and synthetic poses of scripts/models/pose/synthetic.py",
                 "frames": {"measured": len(measured) // 2, "made": len(made) // 2},
                 "figures": report(arrays, arguments.data)}

@@ -88,7 +88,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", default=cmu.FULL_DATA)
     parser.add_argument("--out", default=os.path.join(cmu.ROOT, "build/pose/vae.pt"))
-    parser.add_argument("--steps", type=int, default=15_000)
+    parser.add_argument("--steps", type=int, default=20_000)
     parser.add_argument("--restart", action="store_true", help="do not go on from an earlier checkpoint")
     arguments = parser.parse_args()
 
