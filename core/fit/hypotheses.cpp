@@ -13,6 +13,11 @@ bool is_bad(const FitScore& score, const HypothesisSettings& settings) {
          score.model_to_scan_p95 > settings.bad_model_to_scan_p95;
 }
 
+bool is_hopeless(const FitScore& score, const HypothesisSettings& settings) {
+  return score.scan_to_model_p95 > settings.hopeless_scan_to_model_p95 ||
+         score.model_to_scan_p95 > settings.bad_model_to_scan_p95;
+}
+
 constexpr std::array kShoulders = {11}, kHips = {23};
 constexpr std::array kArms = {13, 15, 17, 19}, kLegs = {25, 27, 29, 31};
 
@@ -59,6 +64,15 @@ struct Fit {
   FitScore score;
 };
 
+constexpr int kCoarseScoreSamples = 2000;
+
+/// Whether two states pose the joints alike.
+bool same_pose(const FitModel& model, const BodyState& a, const BodyState& b, double tolerance) {
+  const Points3d joints_a = pose_skeleton(model.body, a).joints,
+                 joints_b = pose_skeleton(model.body, b).joints;
+  return (joints_a - joints_b).colwise().norm().maxCoeff() < tolerance;
+}
+
 /// Refits all candidates, each on one thread, and returns them scored in the candidates' order.
 std::vector<Fit> refit(const FitModel& model, const ScanTarget& scan,
                        const std::vector<BodyState>& candidates, const FitSchedule& schedule,
@@ -70,7 +84,7 @@ std::vector<Fit> refit(const FitModel& model, const ScanTarget& scan,
                            for (std::ptrdiff_t i = begin; i < end; ++i) {
                              fits[i].state = candidates[i];
                              fit_surface(model, scan, schedule, {}, fits[i].state, single);
-                             fits[i].score = score_fit(model, scan, fits[i].state);
+                             fits[i].score = score_fit(model, scan, fits[i].state, kCoarseScoreSamples);
                            }
                          });
   return fits;
@@ -90,8 +104,9 @@ int repair(const FitModel& model, const ScanTarget& scan, const HypothesisSettin
     });
     std::vector<BodyState> candidates;
     for (const auto& of_limb : found) candidates.insert(candidates.end(), of_limb.begin(), of_limb.end());
-    candidates.resize(std::min<std::size_t>(candidates.size(), static_cast<std::size_t>(budget)), fit.state);
+    if (static_cast<int>(candidates.size()) > budget) candidates.resize(budget);
     budget -= static_cast<int>(candidates.size());
+    fit.score = score_fit(model, scan, fit.state, kCoarseScoreSamples);
     bool better = false;
     for (Fit& other : refit(model, scan, candidates, FitSchedule::after_limb_search(), execution)) {
       if (other.score.total() < fit.score.total() - settings.least_gain) {
@@ -118,32 +133,40 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
                                 const std::vector<LandmarkTarget>& plain, const HypothesisSettings& settings,
                                 const Execution& execution) {
   HypothesisResult best;
+  std::vector<BodyState> tried;
   int budget = settings.refit_budget;
-  bool first = true;
   for (const Start& start : kStarts) {
+    const bool first = tried.empty();
     if (start.plain && plain.empty()) continue;
     if (!first && budget <= 0) break;
     const std::vector<LandmarkTarget> targets = start.plain ? plain : exchanged(landmarks, start);
     Fit fit;
     fit.state = fit_landmarks(model, targets);
-    fit_surface(model, scan, FitSchedule::full(), targets, fit.state, execution);
-    fit.score = score_fit(model, scan, fit.state);
+    fit_surface(model, scan, FitSchedule::coarse(), targets, fit.state, execution);
     if (!first) --budget;
+    // A start that ends where an earlier one did would only repeat its repairs.
+    if (std::any_of(tried.begin(), tried.end(),
+                    [&](const BodyState& t) { return same_pose(model, t, fit.state, settings.same_pose); })) {
+      continue;
+    }
+    tried.push_back(fit.state);
+    fit.score = score_fit(model, scan, fit.state, kCoarseScoreSamples);
     const int repairs = repair(model, scan, settings, fit, budget, execution);
-    const bool bad = is_bad(fit.score, settings);
-    if (first || fit.score.total() < best.score.total()) {
-      best.runner_up_gap = first ? 0 : best.score.total() - fit.score.total();
+    if (repairs > 0) tried.push_back(fit.state);
+    fit_surface(model, scan, FitSchedule::polish(), {}, fit.state, execution);
+    fit.score = score_fit(model, scan, fit.state);
+    const double gap = fit.score.total() - best.score.total();
+    if (first || gap < 0) {
+      best.runner_up_gap = first ? 0 : -gap;
       best.state = fit.state;
       best.score = fit.score;
       best.start = start.name;
       best.repairs = repairs;
-      best.bad = bad;
+      best.bad = is_hopeless(fit.score, settings);
     } else {
-      const double gap = fit.score.total() - best.score.total();
       best.runner_up_gap = best.runner_up_gap > 0 ? std::min(best.runner_up_gap, gap) : gap;
     }
-    first = false;
-    if (!bad) break;
+    if (!best.bad) break;
   }
   best.refits = settings.refit_budget - budget;
   return best;

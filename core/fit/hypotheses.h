@@ -11,12 +11,17 @@ namespace vitruvian {
 /// When a fit counts as bad, and how much may be spent on finding a better one. Budgets are counts, not
 /// times, so that a result never depends on the machine's speed.
 struct HypothesisSettings {
-  double bad_scan_to_model_p95 = 0.045;  ///< m
-  double bad_model_to_scan_p95 = 0.025;  ///< m
+  /// A fit beyond either is searched for misplaced limbs; m.
+  double bad_scan_to_model_p95 = 0.045;
+  double bad_model_to_scan_p95 = 0.025;
+  /// A fit that is still beyond this, or beyond bad_model_to_scan_p95, is started anew; m. Between the two
+  /// lie clothes and hair: scan points without a counterpart on a body that is otherwise explained.
+  double hopeless_scan_to_model_p95 = 0.09;
   int repair_rounds = 3;
   int candidates_per_limb = 2;
   double least_gain = 0.0005;  ///< m of FitScore::total()
-  int refit_budget = 48;       ///< surface fits beyond the first
+  int refit_budget = 48;       ///< coarse surface fits beyond the first
+  double same_pose = 0.06;     ///< m, largest joint distance at which two starts count as one
 };
 
 struct HypothesisResult {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace vitruvian {
 namespace {
@@ -10,6 +11,10 @@ namespace {
 constexpr int kLimbVertices = 140;
 constexpr int kModelVertices = 4500;
 constexpr int kScanPoints = 2500;
+// A first look at the whole library with few points picks those that deserve all of them.
+constexpr int kFirstLookVertices = 36;
+constexpr int kFirstLookPoints = 160;
+constexpr std::size_t kSecondLook = 40;
 constexpr float kUnexplained = 0.05f;  // m
 constexpr float kLargestDistance = 0.2f;
 constexpr int kLeastUnexplained = 60;  // few points must not decide alone
@@ -26,7 +31,7 @@ Mat3d rotation_of(const Vec3d& axis_angle) {
 
 /// Vertices of the limb in a new pose of its root and middle joint.
 [[gnu::noinline]] void pose_limb(const FitModel& model, const BodyState& state, const PosedModel& posed,
-                                 const LimbChain& limb, const std::vector<int>& vertices, Points3f& result) {
+                                 const LimbChain& limb, std::span<const int> vertices, Points3f& result) {
   const BodyModel& body = model.body;
   Skeleton skeleton = posed.skeleton;
   for (const int j : {limb.root, limb.middle, limb.end, limb.tip}) {
@@ -50,7 +55,8 @@ Mat3d rotation_of(const Vec3d& axis_angle) {
   }
 }
 
-double cost_of(const Points3f& limb_points, const ScanTarget& scan, const std::vector<Vec3f>& unexplained) {
+[[gnu::noinline]] double cost_of(const Points3f& limb_points, const ScanTarget& scan,
+                                 std::span<const Vec3f> unexplained, std::size_t all_unexplained) {
   double to_scan = 0;
   for (Index i = 0; i < limb_points.cols(); ++i) {
     const float squared = scan.by_position.nearest(limb_points.col(i)).squared_distance;
@@ -62,7 +68,8 @@ double cost_of(const Points3f& limb_points, const ScanTarget& scan, const std::v
     to_limb += std::min(kLargestDistance, std::sqrt(squared));
   }
   return to_scan / static_cast<double>(std::max<Index>(1, limb_points.cols())) +
-         to_limb / std::max<double>(kLeastUnexplained, static_cast<double>(unexplained.size()));
+         to_limb / std::max<double>(1, static_cast<double>(unexplained.size())) *
+             std::min(1.0, static_cast<double>(all_unexplained) / kLeastUnexplained);
 }
 
 }  // namespace
@@ -96,17 +103,27 @@ std::vector<BodyState> search_limb(const FitModel& model, const ScanTarget& scan
   candidate.rotation[limb.end].setIdentity();
   candidate.rotation[limb.tip].setIdentity();
   Points3f points;
-  for (Index c = 0; c < library.cols(); ++c) {
+  const auto cost = [&](Index c, std::span<const int> vertices, std::span<const Vec3f> targets) {
     candidate.rotation[limb.root] = upper(c);
     candidate.rotation[limb.middle] = lower(c);
-    pose_limb(model, candidate, posed, limb, limb_vertices, points);
-    ranking.emplace_back(cost_of(points, scan, unexplained), c);
+    pose_limb(model, candidate, posed, limb, vertices, points);
+    return cost_of(points, scan, targets, unexplained.size());
+  };
+  const auto head = [](auto& list, int count) {
+    return std::span(list).first(std::min<std::size_t>(list.size(), static_cast<std::size_t>(count)));
+  };
+  for (Index c = 0; c < library.cols(); ++c) {
+    ranking.emplace_back(
+        cost(c, head(limb_vertices, kFirstLookVertices), head(unexplained, kFirstLookPoints)), c);
   }
+  std::sort(ranking.begin(), ranking.end());
+  if (ranking.size() > kSecondLook) ranking.resize(kSecondLook);
+  for (auto& [value, c] : ranking) value = cost(c, limb_vertices, unexplained);
   std::sort(ranking.begin(), ranking.end());
 
   std::vector<BodyState> result;
   std::vector<Index> taken;
-  for (const auto& [cost, c] : ranking) {
+  for (const auto& [value, c] : ranking) {
     const bool distinct = std::all_of(taken.begin(), taken.end(), [&](Index t) {
       return Eigen::AngleAxisd(Mat3d(upper(t).transpose() * upper(c))).angle() >= kDistinct;
     });

@@ -83,12 +83,18 @@ FitSchedule FitSchedule::full() {
            {4, 4000, 0.01, 0.005, 0.0, 0.003, 0.1, 0.005, 0.0, false}}};
 }
 
-FitSchedule FitSchedule::after_limb_search() {
+FitSchedule FitSchedule::coarse() {
   FitSchedule schedule = full();
-  schedule.stages[0].sigma_begin = 0.08;
-  for (FitStage& stage : schedule.stages) stage.landmarks = 0;
+  schedule.stages.pop_back();
   return schedule;
 }
+
+FitSchedule FitSchedule::after_limb_search() {
+  return {{{14, 700, 0.08, 0.04, 0.3, 0.03, 1.0, 0.05, 0.0, true},
+           {6, 1500, 0.04, 0.01, 0.3, 0.01, 0.3, 0.02, 0.0, true}}};
+}
+
+FitSchedule FitSchedule::polish() { return {{full().stages.back()}}; }
 
 void fit_surface(const FitModel& model, const ScanTarget& scan, const FitSchedule& schedule,
                  std::span<const LandmarkTarget> landmarks, BodyState& state, const Execution& execution) {

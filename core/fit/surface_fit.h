@@ -27,8 +27,12 @@ struct FitSchedule {
   std::vector<FitStage> stages;
   /// From a landmark fit to the surface (measured best; about 36 iterations).
   static FitSchedule full();
-  /// From a re-posed limb: starts narrower and without landmarks.
+  /// The first two stages of full(): enough to tell hypotheses apart.
+  static FitSchedule coarse();
+  /// From a re-posed limb: starts narrower, shorter and without landmarks; as exact as coarse().
   static FitSchedule after_limb_search();
+  /// What coarse() leaves out.
+  static FitSchedule polish();
 };
 
 /// How well a body explains a scan and the scan a body; distances between samples, m.

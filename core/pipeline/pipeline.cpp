@@ -13,6 +13,8 @@ namespace {
 constexpr int kDetectorVertices = 6000;
 constexpr int kFitSamples = 20000;
 constexpr std::size_t kLargestPlacements = 3;
+/// Surface fits that all placements and units of a scan may cost together, beyond their first ones.
+constexpr int kRefitBudget = 72;
 /// Detection scores this near to the best are worth a look when the best one leads to a bad fit.
 constexpr double kWorthTrying = 0.25;
 
@@ -56,9 +58,10 @@ void RegistrationPipeline::set_scan(Scan scan) {
   began_ = Clock::now();
   start_stage(&Timing::align);
   execution_.progress("align", 0);
+  refit_budget_ = kRefitBudget;
   scan_ = std::make_unique<PreparedScan>(std::move(scan), execution_);
   const ViewSurface& surface = scan_->surface;
-  const BodyPoints body = find_body_points(surface.vertices);
+  const BodyPoints body = find_body_points(surface.vertices, surface.faces);
   centroid_ = scan_->scan.origin + centroid(surface.vertices, surface.faces, body);
   const double extent = diameter(surface.vertices, body);
   if (settings_.unit == Unit::automatic) {
@@ -143,7 +146,7 @@ void RegistrationPipeline::accept(const NetworkReply& reply) {
 
 RegistrationPipeline::Candidate RegistrationPipeline::fit_candidate(const Placement& placement,
                                                                     const UnitCandidate& unit,
-                                                                    SeenLandmarks seen) const {
+                                                                    SeenLandmarks seen) {
   Candidate candidate;
   candidate.unit = unit;
   candidate.method = placement.method;
@@ -169,7 +172,10 @@ RegistrationPipeline::Candidate RegistrationPipeline::fit_candidate(const Placem
   std::vector<LandmarkTarget> plain;
   if (!candidate.landmarks.plain.empty())
     plain = landmark_targets(models_.landmarks, candidate.landmarks.plain);
-  candidate.fit = fit_hypotheses(*fit_model_, target, targets, plain, HypothesisSettings(), execution_);
+  HypothesisSettings hypotheses;
+  hypotheses.refit_budget = std::min(hypotheses.refit_budget, refit_budget_);
+  candidate.fit = fit_hypotheses(*fit_model_, target, targets, plain, hypotheses, execution_);
+  refit_budget_ -= candidate.fit.refits;
   candidate.stature = standing_stature(models_.body, candidate.fit.state.betas);
   return candidate;
 }

@@ -70,7 +70,7 @@ class RegistrationPipeline {
   void begin_placements();
   void begin_views();
   void fit_placement();
-  Candidate fit_candidate(const Placement& placement, const UnitCandidate& unit, SeenLandmarks seen) const;
+  Candidate fit_candidate(const Placement& placement, const UnitCandidate& unit, SeenLandmarks seen);
   double rank(const Candidate& candidate) const;
 
   const Models& models_;
@@ -87,6 +87,7 @@ class RegistrationPipeline {
   std::vector<Placement> placements_;
   std::size_t placement_ = 0;
   std::optional<Candidate> best_;
+  int refit_budget_ = 0;
   bool finished_ = false;
 
   Timing timing_;
