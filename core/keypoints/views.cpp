@@ -186,13 +186,6 @@ ViewSurface prepare_surface(Points3f vertices, Faces faces, Points3f normals, co
   return surface;
 }
 
-ViewSurface transformed(const ViewSurface& surface, const Mat3f& rotation, const Vec3f& translation) {
-  ViewSurface result = surface;
-  result.vertices = (rotation * surface.vertices).colwise() + translation;
-  result.normals = rotation * surface.normals;
-  return result;
-}
-
 Camera framing_camera(const Points3f& vertices, const Vec3f& toward_viewer, const Vec3f& up,
                       const Framing& framing) {
   Camera camera = looking(toward_viewer, up);
@@ -202,12 +195,14 @@ Camera framing_camera(const Points3f& vertices, const Vec3f& toward_viewer, cons
   return camera;
 }
 
-std::vector<Camera> ring_cameras(const Points3f& vertices, int count, const Framing& framing) {
+std::vector<Camera> ring_cameras(const Points3f& vertices, int count, const Framing& framing,
+                                 const Vec3f& up) {
+  const Eigen::Quaternionf tilt = Eigen::Quaternionf::FromTwoVectors(Vec3f::UnitY(), up);
   std::vector<Camera> cameras;
   for (int k = 0; k < count; ++k) {
     const double azimuth = 2 * std::numbers::pi * k / count;
     const Vec3f toward = Vec3d(std::sin(azimuth), 0, std::cos(azimuth)).cast<float>();
-    cameras.push_back(framing_camera(vertices, toward, Vec3f::UnitY(), framing));
+    cameras.push_back(framing_camera(vertices, tilt * toward, up, framing));
   }
   return cameras;
 }

@@ -26,9 +26,6 @@ struct ViewSurface {
 /// @throws Error(internal) when sizes do not match or a face's index is out of range.
 ViewSurface prepare_surface(Points3f vertices, Faces faces, Points3f normals, const Execution& execution);
 
-/// The same surface moved by a rotation and a translation.
-ViewSurface transformed(const ViewSurface& surface, const Mat3f& rotation, const Vec3f& translation);
-
 /// Light and colours, in the camera's frame (right, up, toward the viewer). The defaults are the style in
 /// which the landmark network erred least on pictures without texture.
 struct ViewStyle {
@@ -52,9 +49,11 @@ struct Framing {
 Camera framing_camera(const Points3f& vertices, const Vec3f& toward_viewer, const Vec3f& up,
                       const Framing& framing);
 
-/// Cameras round a body in the body frame (Y up), at azimuths 0, 360/count, ...; azimuth 0 sees the front
-/// (from +Z), 90 degrees the left side (from +X).
-std::vector<Camera> ring_cameras(const Points3f& vertices, int count, const Framing& framing);
+/// Cameras round a body in the body frame, at azimuths 0, 360/count, ... about `up`. With Y up, azimuth 0
+/// sees the front (from +Z) and 90 degrees the left side (from +X). For bodies that bend, lie or hang, `up`
+/// along the trunk (hips to shoulders) instead of against gravity makes the landmark network err far less.
+std::vector<Camera> ring_cameras(const Points3f& vertices, int count, const Framing& framing,
+                                 const Vec3f& up = Vec3f::UnitY());
 
 /// The paper's two views (section 3.1.2) of a body in the body frame: front, then side. The side camera
 /// stands at the canonical frame's +X, which is the body's right side. Both have the same scale and the same

@@ -80,6 +80,18 @@ TEST(Cameras, AzimuthZeroSeesTheFrontAndNinetyTheLeftSide) {
   EXPECT_GT(cameras[0].project({1, 0, 0}).x(), cameras[0].project({0, 0, 0}).x());
 }
 
+TEST(Cameras, RingTurnsAboutAnyUp) {
+  const Mesh mesh = body_like();
+  for (const Vec3f& up : {Vec3f(0, -1, 0), Vec3f(1, 0, 0), Vec3f(0.36f, 0.48f, -0.8f)}) {
+    const auto cameras = ring_cameras(mesh.vertices, 8, Framing(), up);
+    for (std::size_t k = 0; k < cameras.size(); ++k) {
+      EXPECT_LT((cameras[k].up - up).norm(), 1e-5);
+      EXPECT_NEAR(cameras[k].toward_viewer.dot(cameras[(k + 2) % 8].toward_viewer), 0, 1e-5);
+      EXPECT_LT((cameras[k].right - cameras[(k + 2) % 8].toward_viewer).norm(), 1e-5);
+    }
+  }
+}
+
 TEST(Cameras, StrayPointsDoNotShrinkTheBody) {
   Mesh mesh = body_like();
   const float before = ring_cameras(mesh.vertices, 1, Framing())[0].pixels_per_metre;
