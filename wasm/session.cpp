@@ -80,7 +80,7 @@ void Session::open(Buffer file, std::string name) {
     read_ms_ = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
     const Points3f normals = Points3f::Zero(3, scan.vertices.cols());
     shown_ = cluster_decimate(scan.vertices, normals, scan.faces, kShownVertices);
-    shown_.normals.resize(3, 0);
+    shown_.normals = vertex_normals(shown_.vertices, shown_.faces);
     scan_ = std::move(scan);
   });
 }

@@ -49,7 +49,7 @@ class Session {
 
   /// Starts to read a scan; replaces the one before and all that was found in it.
   void open(Buffer file, std::string name);
-  /// `{"vertices", "faces", "decimated", "origin", "notes", "positions", "indices"}` of the scan that was
+  /// `{"vertices", "faces", "decimated", "origin", "notes", "positions", "normals", "indices"}` of the scan that was
   /// opened.
   std::string scan_report() const;
 

@@ -32,6 +32,7 @@ nlohmann::json describe_scan(const Scan& scan, const DecimatedMesh& shown) {
       {"origin", {scan.origin.x(), scan.origin.y(), scan.origin.z()}},
       {"notes", scan.notes},
       {"positions", array_reference(shown.vertices.data(), shown.vertices.size())},
+      {"normals", array_reference(shown.normals.data(), shown.normals.size())},
       {"indices", array_reference(shown.faces.data(), shown.faces.size())},
   };
 }

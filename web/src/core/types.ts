@@ -124,6 +124,8 @@ export class CoreError extends Error {
 export interface Mesh {
   /** xyz triples */
   positions: Float32Array;
+  /** a vertex each; absent: to be computed from the faces */
+  normals?: Float32Array;
   indices: Uint32Array;
 }
 

@@ -82,8 +82,8 @@ export function ViewPane() {
   const probe = useSignal("");
   const onPointerMove = (event: PointerEvent) => {
     if (event.buttons !== 0 || !state.result.value) return;
-    const hit = viewer.peek()?.pick(event.offsetX, event.offsetY);
-    const error = hit?.what === "body" ? state.result.value.vertexErrorMm[hit.vertex] : undefined;
+    const vertex = viewer.peek()?.pickBody(event.offsetX, event.offsetY) ?? -1;
+    const error = state.result.value.vertexErrorMm[vertex];
     probe.value = error === undefined ? "" : `${millimetres(error)} mm from the scan here`;
   };
 

@@ -48,12 +48,6 @@ const PARENTS = [-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 1
 
 export type Direction = "front" | "back" | "left" | "right" | "top";
 
-export interface Pick {
-  what: "scan" | "body";
-  /** nearest vertex of the mesh that was hit */
-  vertex: number;
-}
-
 export class Viewer {
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
@@ -162,7 +156,10 @@ export class Viewer {
     this.errorsMm = errorsMm;
     if (mesh && mesh.positions.length > 0) {
       const material = new MeshLambertMaterial({ color: BODY_COLOUR, side: DoubleSide, transparent: true });
-      this.bodyRoot.add(new Mesh(geometryOf(mesh), material));
+      const geometry = geometryOf({ ...mesh, indices: mesh.indices.slice() });
+      // Only the body is picked. The tree reorders the triangles, hence the copy; a large scan's would hold up the page.
+      geometry.computeBoundsTree();
+      this.bodyRoot.add(new Mesh(geometry, material));
     }
     this.paint();
     this.apply();
@@ -270,22 +267,21 @@ export class Viewer {
     this.request();
   }
 
-  /** What lies under a point of the canvas, in CSS pixels from its upper left corner. */
-  pick(x: number, y: number): Pick | null {
-    const { width, height, left } = this.pane(x);
+  /** Vertex of the body nearest to what lies under a point of the canvas (CSS pixels from its upper left corner). */
+  pickBody(x: number, y: number): number | null {
+    const mesh = this.bodyRoot.children[0] as Mesh | undefined;
+    const { left, width, height } = this.pane(x);
+    if (!mesh || !this.options?.showBody || (this.options.split && left === 0)) return null;
     const pointer = new Vector2(((x - left) / width) * 2 - 1, 1 - (y / height) * 2);
     const caster = new Raycaster();
     caster.firstHitOnly = true;
     caster.setFromCamera(pointer, this.camera);
-    const roots = [this.bodyRoot, this.scanRoot].filter((root) => this.inPane(root, x));
-    const hit = caster.intersectObjects(roots, true).find(({ object }) => object instanceof Mesh);
+    const hit = caster.intersectObject(mesh)[0];
     if (!hit?.face) return null;
-    const mesh = hit.object as Mesh;
     const position = mesh.geometry.getAttribute("position");
-    const point = mesh.worldToLocal(hit.point.clone());
-    const distance = (i: number) => point.distanceToSquared(new Vector3().fromBufferAttribute(position, i));
-    const corners = [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => distance(a) - distance(b));
-    return { what: mesh.parent === this.bodyRoot ? "body" : "scan", vertex: corners[0]! };
+    const distance = (i: number) =>
+      hit.point.distanceToSquared(new Vector3().fromBufferAttribute(position, i));
+    return [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => distance(a) - distance(b))[0]!;
   }
 
   dispose(): void {
@@ -307,11 +303,6 @@ export class Viewer {
     if (!this.options?.split) return { left: 0, width: clientWidth, height: clientHeight };
     const width = clientWidth / 2;
     return { left: x < width ? 0 : width, width, height: clientHeight };
-  }
-
-  private inPane(root: Group, x: number): boolean {
-    if (!this.options?.split) return root.visible;
-    return x < this.canvas.clientWidth / 2 ? root === this.scanRoot : root === this.bodyRoot;
   }
 
   /** Body colours: the error scale, or plain. */
@@ -391,14 +382,13 @@ export class Viewer {
   }
 }
 
-function geometryOf({ positions, indices }: MeshData): BufferGeometry {
+function geometryOf({ positions, normals, indices }: MeshData): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
   if (indices.length > 0) {
-    // A copy: the picking tree reorders the triangles in place, and the caller's mesh must stay as it is.
-    geometry.setIndex(new BufferAttribute(indices.slice(), 1));
-    geometry.computeVertexNormals();
-    geometry.computeBoundsTree();
+    geometry.setIndex(new BufferAttribute(indices, 1));
+    if (normals) geometry.setAttribute("normal", new BufferAttribute(normals, 3));
+    else geometry.computeVertexNormals();
   }
   return geometry;
 }

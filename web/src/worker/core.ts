@@ -56,6 +56,7 @@ export interface ScanReport {
   origin: [number, number, number];
   notes: string[];
   positions: ArrayReference;
+  normals: ArrayReference;
   indices: ArrayReference;
 }
 
@@ -161,6 +162,7 @@ export class Core {
   private async answer({ network, inputs }: NetworkRequest, runNetwork: RunNetwork): Promise<void> {
     for (const [i, input] of inputs.entries()) {
       this.checkCancelled();
+      this.onProgress("detect", i / inputs.length);
       const outputs = await runNetwork(network, this.floats(input));
       for (const [j, output] of outputs.entries()) {
         const address = this.check(this.module._vitruvian_reply_buffer(i, j, output.length)) >>> 0;

@@ -12,20 +12,30 @@ const scope = self as unknown as {
 type Handlers = { [K in Kind]: (args: Calls[K]["args"]) => Promise<Calls[K]["result"]> };
 
 let core: Core | null = null;
-let networks: Networks | null = null;
 let base = "";
-let modelsLoaded = false;
+let ready: Promise<Networks> | null = null;
 
 function theCore(): Core {
   if (!core) throw new CoreError("internal", "the core was not started");
   return core;
 }
 
-async function theNetworks(threads: number): Promise<Networks> {
-  if (!networks) {
-    const { Networks } = await import("./networks");
-    networks = new Networks(base, threads, tell);
+/** Models and networks, loaded once, when the first scan has been opened. */
+function prepared(): Promise<Networks> {
+  if (!ready) {
+    ready = prepare(theCore());
+    ready.catch(() => {
+      ready = null;
+    });
   }
+  return ready;
+}
+
+async function prepare(core: Core): Promise<Networks> {
+  await core.loadModels(base);
+  const { Networks } = await import("./networks");
+  const networks = new Networks(base, core.threads, tell);
+  await networks.start();
   return networks;
 }
 
@@ -43,7 +53,10 @@ const handlers: Handlers = {
   },
 
   async open({ file, name }): Promise<ScanData> {
-    const report = await theCore().open(file, name);
+    const core = theCore();
+    const report = await core.open(file, name);
+    // A registration is what comes next. A failure here is reported by it.
+    prepared().catch(() => {});
     return {
       file: name,
       bytes: file.size,
@@ -52,16 +65,18 @@ const handlers: Handlers = {
       decimated: report.decimated,
       origin: report.origin,
       notes: report.notes,
-      mesh: { positions: theCore().floats(report.positions), indices: theCore().integers(report.indices) },
+      mesh: {
+        positions: core.floats(report.positions),
+        normals: core.floats(report.normals),
+        indices: core.integers(report.indices),
+      },
     };
   },
 
   async run({ settings }): Promise<ResultData> {
     const core = theCore();
-    if (!modelsLoaded) await core.loadModels(base);
-    modelsLoaded = true;
-    const runner = await theNetworks(core.threads);
-    const report = await core.register(settings, (network, input) => runner.run(network, input));
+    const networks = await prepared();
+    const report = await core.register(settings, (network, input) => networks.run(network, input));
     return {
       registration: report.registration,
       height_m: report.height_m,

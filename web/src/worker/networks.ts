@@ -24,6 +24,11 @@ export class Networks {
     env.wasm.proxy = false;
   }
 
+  /** Loads both networks. @throws CoreError(network) */
+  async start(): Promise<void> {
+    for (const network of ["detector", "landmarks"] as const) await this.session(network);
+  }
+
   /** Outputs of one run in the core's order. */
   async run(network: Network, input: Float32Array): Promise<Float32Array[]> {
     const session = await this.session(network);
