@@ -13,6 +13,7 @@ namespace vitruvian {
 namespace {
 
 constexpr double kShapeSpread = 0.7;
+constexpr int kViews = 8;
 
 /// A pose the prior thinks possible: decoded from the autoencoder, or drawn from the Gaussian, inside the
 /// joint limits.
@@ -43,7 +44,6 @@ Calibration calibrate_model(const BodyModel& body, const PosePrior& prior, int b
                             const std::function<NetworkReply(const NetworkRequest&)>& run_network,
                             const Execution& execution) {
   Random random(seed);
-  const Settings settings;
   std::vector<CalibrationBody> seen;
   for (int i = 0; i < bodies; ++i) {
     execution.check();
@@ -52,9 +52,9 @@ Calibration calibrate_model(const BodyModel& body, const PosePrior& prior, int b
     const BodyState state = BodyState::from_axis_angle(draw_pose(body, prior, random), betas, Vec3d::Zero());
     const Points3f vertices = posed_vertices<float>(body, state);
     const ViewSurface surface = prepare_surface(vertices, body.faces, Points3f(3, 0), execution);
-    LandmarkStage stage(surface, settings, execution);
-    while (const auto request = stage.next_request()) stage.accept(run_network(*request));
     const Skeleton skeleton = pose_skeleton(body, state);
+    LandmarkStage stage(surface, skeleton.global[0].col(1), kViews, 0, execution);
+    while (const auto request = stage.next_request()) stage.accept(run_network(*request));
     seen.push_back({stage.result().swap_aware, skeleton.joints, skeleton.global});
     execution.progress("calibrate", static_cast<double>(i + 1) / bodies);
   }

@@ -35,14 +35,15 @@ Keypoint to_keypoint(const SmplKeypoint& joint, std::string_view name) {
 
 }  // namespace
 
-LandmarkStage::LandmarkStage(const ViewSurface& upright, const Settings& settings, const Execution& execution)
-    : settings_(settings) {
+LandmarkStage::LandmarkStage(const ViewSurface& upright, const Vec3d& trunk, int views, double min_visibility,
+                             const Execution& execution)
+    : min_visibility_(min_visibility) {
   const Framing framing;
-  if (settings.views == 2) {
+  if (views == 2) {
     const auto cameras = paper_cameras(upright.vertices, framing);
     cameras_.assign(cameras.begin(), cameras.end());
   } else {
-    cameras_ = ring_cameras(upright.vertices, settings.views, framing);
+    cameras_ = ring_cameras(upright.vertices, views, framing, trunk.cast<float>());
   }
   views_ = render_views(upright, cameras_, ViewStyle(), execution);
   detector_.emplace(views_);
@@ -53,14 +54,14 @@ SeenLandmarks LandmarkStage::result() const {
   const std::vector<ViewLandmarks>& views = detector_->result();
   for (const ViewLandmarks& view : views)
     seen.presence += view.body_presence / static_cast<double>(views.size());
-  if (settings_.views == 2) {
-    seen.swap_aware = lift_two_views(cameras_[0], views[0], cameras_[1], views[1], VisibilityRule::mean,
-                                     settings_.min_visibility);
+  if (views.size() == 2) {
+    seen.swap_aware =
+        lift_two_views(cameras_[0], views[0], cameras_[1], views[1], VisibilityRule::mean, min_visibility_);
     correct_left_right(seen.swap_aware);
     return seen;
   }
   TriangulationSettings triangulation;
-  triangulation.min_visibility = settings_.min_visibility;
+  triangulation.min_visibility = min_visibility_;
   seen.swap_aware = triangulate(cameras_, views, triangulation).landmarks;
   triangulation.find_swaps = false;
   seen.plain = triangulate(cameras_, views, triangulation).landmarks;

@@ -25,7 +25,10 @@ struct SeenLandmarks {
 class LandmarkStage {
  public:
   /// @param upright  scan with Y up, metres.
-  LandmarkStage(const ViewSurface& upright, const Settings& settings, const Execution& execution);
+  /// @param views    2: front and side as published, of a body that faces +Z; more: a ring round the body.
+  /// @param trunk    direction from hips to head in that frame, roughly: pictures are taken upright along it.
+  LandmarkStage(const ViewSurface& upright, const Vec3d& trunk, int views, double min_visibility,
+                const Execution& execution);
 
   std::optional<NetworkRequest> next_request() const { return detector_->next_request(); }
   void accept(const NetworkReply& reply) { detector_->accept(reply); }
@@ -36,7 +39,7 @@ class LandmarkStage {
   const std::vector<ViewLandmarks>& view_landmarks() const { return detector_->result(); }
 
  private:
-  const Settings& settings_;
+  double min_visibility_;
   std::vector<Camera> cameras_;
   std::vector<View> views_;
   std::optional<ViewLandmarkDetector> detector_;

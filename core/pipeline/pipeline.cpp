@@ -1,8 +1,8 @@
 #include "pipeline/pipeline.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
-#include "align/body_points.h"
 #include "align/frame.h"
 #include "base/error.h"
 #include "pipeline/outcome.h"
@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kDetectorVertices = 6000;
 constexpr int kFitSamples = 20000;
+constexpr int kFacingViews = 8;
 constexpr std::size_t kLargestPlacements = 3;
 /// Surface fits that all placements and units of a scan may cost together, beyond their first ones.
 constexpr int kRefitBudget = 72;
@@ -61,45 +62,40 @@ void RegistrationPipeline::set_scan(Scan scan) {
   refit_budget_ = kRefitBudget;
   scan_ = std::make_unique<PreparedScan>(std::move(scan), execution_);
   const ViewSurface& surface = scan_->surface;
-  const BodyPoints body = find_body_points(surface.vertices, surface.faces);
-  centroid_ = scan_->scan.origin + centroid(surface.vertices, surface.faces, body);
-  const double extent = diameter(surface.vertices, body);
   if (settings_.unit == Unit::automatic) {
-    units_ = guess_unit(extent, scan_->scan.metres_per_unit);
+    units_ = guess_unit(scan_->extent, scan_->scan.metres_per_unit);
   } else {
-    units_.candidates = {fixed_unit(settings_.unit, extent)};
+    units_.candidates = {fixed_unit(settings_.unit, scan_->extent)};
   }
   if (settings_.align == AlignMode::pca) {
-    placements_ = {{Vec3d::Zero(), align_pca(surface.vertices, models_.body.v_template), "pca"}};
-  } else if (settings_.up != Axis::automatic) {
-    const Vec3d up = axis_vector(to_string(settings_.up));
-    std::optional<Vec3d> front;
-    if (settings_.front != Axis::automatic) front = axis_vector(to_string(settings_.front));
-    placements_ = {{up, body_from_scan_rotation(up, front), "given"}};
-  } else {
-    DecimatedMesh coarse =
-        cluster_decimate(surface.vertices, surface.normals, surface.faces, kDetectorVertices);
-    if (surface.faces.cols() > 0 && coarse.faces.cols() < coarse.vertices.cols() / 2)
-      coarse.faces.resize(3, 0);
-    detector_surface_ = std::make_unique<ViewSurface>(prepare_surface(
-        std::move(coarse.vertices), std::move(coarse.faces), std::move(coarse.normals), execution_));
-    up_detector_ = std::make_unique<UpDetector>(*detector_surface_, execution_);
+    placements_ = {{align_pca(surface.vertices, models_.body.v_template), Vec3d::UnitY(), "pca"}};
+    begin_views();
     return;
   }
-  begin_views();
+  DecimatedMesh coarse =
+      cluster_decimate(surface.vertices, surface.normals, surface.faces, kDetectorVertices);
+  if (surface.faces.cols() > 0 && coarse.faces.cols() < coarse.vertices.cols() / 2) coarse.faces.resize(3, 0);
+  detector_surface_ = std::make_unique<ViewSurface>(prepare_surface(
+      std::move(coarse.vertices), std::move(coarse.faces), std::move(coarse.normals), execution_));
+  up_detector_ = std::make_unique<UpDetector>(*detector_surface_, execution_);
 }
 
 void RegistrationPipeline::begin_placements() {
   const std::vector<UpHypothesis> ups = up_detector_->result();
+  std::optional<Vec3d> front;
+  if (settings_.front != Axis::automatic) front = axis_vector(to_string(settings_.front));
+  if (settings_.up != Axis::automatic) {
+    // The body frame is as the user says; the pictures are taken upright along the trunk all the same.
+    const Mat3d rotation = body_from_scan_rotation(axis_vector(to_string(settings_.up)), front);
+    placements_ = {{rotation, rotation * ups.front().up, "given"}};
+    begin_views();
+    return;
+  }
   for (const UpHypothesis& hypothesis : ups) {
     if (placements_.size() >= kLargestPlacements) break;
     if (!placements_.empty() && hypothesis.score < kWorthTrying * ups.front().score) break;
-    std::optional<Vec3d> front;
-    if (settings_.front != Axis::automatic) {
-      front = axis_vector(to_string(settings_.front));
-      if (std::abs(front->dot(hypothesis.up)) > 0.9) continue;
-    }
-    placements_.push_back({hypothesis.up, body_from_scan_rotation(hypothesis.up, front), "views"});
+    if (front && std::abs(front->dot(hypothesis.up)) > 0.9) continue;
+    placements_.push_back({body_from_scan_rotation(hypothesis.up, front), Vec3d::UnitY(), "views"});
   }
   if (placements_.empty()) {
     throw Error(ErrorCode::usage,
@@ -114,11 +110,13 @@ void RegistrationPipeline::begin_views() {
   const UnitCandidate& unit = units_.candidates.front();
   ViewSurface upright = scan_->surface;
   const Mat4d upright_from_scan =
-      body_from_scan(placements_[placement_].rotation, centroid_, unit.metres_per_unit);
+      body_from_scan(placements_[placement_].rotation, scan_->centroid, unit.metres_per_unit);
   upright.vertices = transform_points(upright.vertices, scan_->scan.origin, upright_from_scan);
   upright.normals = (placements_[placement_].rotation.cast<float>() * upright.normals).eval();
   upright.point_radii *= static_cast<float>(unit.metres_per_unit);
-  landmark_stage_ = std::make_unique<LandmarkStage>(upright, settings_, execution_);
+  const int views = needs_facing() ? kFacingViews : settings_.views;
+  landmark_stage_ = std::make_unique<LandmarkStage>(upright, placements_[placement_].trunk, views,
+                                                    settings_.min_visibility, execution_);
   start_stage(&Timing::detect);
   execution_.progress("detect", 0);
 }
@@ -150,7 +148,7 @@ RegistrationPipeline::Candidate RegistrationPipeline::fit_candidate(const Placem
   Candidate candidate;
   candidate.unit = unit;
   candidate.method = placement.method;
-  candidate.body_from_scan = body_from_scan(placement.rotation, centroid_, unit.metres_per_unit);
+  candidate.body_from_scan = body_from_scan(placement.rotation, scan_->centroid, unit.metres_per_unit);
   const float ratio = static_cast<float>(unit.metres_per_unit / units_.candidates.front().metres_per_unit);
   for (auto* landmarks : {&seen.swap_aware, &seen.plain}) {
     for (Landmark3d& l : *landmarks) l.position *= ratio, l.residual *= ratio;
@@ -186,9 +184,25 @@ double RegistrationPipeline::rank(const Candidate& candidate) const {
          stature_excess(candidate.stature) / 5;
 }
 
+bool RegistrationPipeline::needs_facing() const {
+  return settings_.views == 2 && settings_.align != AlignMode::pca && settings_.front == Axis::automatic &&
+         !placements_[placement_].facing_known;
+}
+
 void RegistrationPipeline::fit_placement() {
   start_stage(&Timing::pose);
   const SeenLandmarks seen = landmark_stage_->result();
+  if (needs_facing()) {
+    // Front and side view need a body that faces forward; a first look all round tells where that is.
+    Placement& placement = placements_[placement_];
+    placement.facing_known = true;
+    if (const auto facing = yaw_from_landmarks(seen.swap_aware)) {
+      placement.rotation =
+          Eigen::AngleAxisd(-facing->yaw, Vec3d::UnitY()).toRotationMatrix() * placement.rotation;
+    }
+    begin_views();
+    return;
+  }
   start_stage(&Timing::fit);
   execution_.progress("fit", 0);
   for (const UnitCandidate& unit : units_.candidates) {

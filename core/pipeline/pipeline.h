@@ -51,9 +51,10 @@ class RegistrationPipeline {
  private:
   /// One assumption of how the scan lies.
   struct Placement {
-    Vec3d up;
     Mat3d rotation;  // upright_from_scan, any heading
+    Vec3d trunk;     // upright frame: direction along which the pictures are upright
     std::string method;
+    bool facing_known = false;
   };
   /// A placement that was looked at and fitted.
   struct Candidate {
@@ -69,6 +70,7 @@ class RegistrationPipeline {
   void start_stage(double Timing::*stage);
   void begin_placements();
   void begin_views();
+  bool needs_facing() const;
   void fit_placement();
   Candidate fit_candidate(const Placement& placement, const UnitCandidate& unit, SeenLandmarks seen);
   double rank(const Candidate& candidate) const;
@@ -82,7 +84,6 @@ class RegistrationPipeline {
   std::unique_ptr<ViewSurface> detector_surface_;
   std::unique_ptr<UpDetector> up_detector_;
   std::unique_ptr<LandmarkStage> landmark_stage_;
-  Vec3d centroid_ = Vec3d::Zero();  // scan frame
   UnitGuess units_;
   std::vector<Placement> placements_;
   std::size_t placement_ = 0;

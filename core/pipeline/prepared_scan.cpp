@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "align/body_points.h"
+
 namespace vitruvian {
 namespace {
 
@@ -41,6 +43,8 @@ PreparedScan::PreparedScan(Scan given, const Execution& execution) : scan(std::m
   // A million scattered points share hardly a triangle after clustering: then the vertices alone are the
   // surface.
   if (scan.faces.cols() > 0 && coarse.faces.cols() < coarse.vertices.cols() / 2) coarse.faces.resize(3, 0);
+  // Strays and a floor would shrink the body in the pictures and cover its feet.
+  coarse = only_body(coarse, find_body_points(coarse.vertices, coarse.faces));
   const std::vector<int> source = coarse.source;
   surface = prepare_surface(std::move(coarse.vertices), std::move(coarse.faces), std::move(coarse.normals),
                             execution);
@@ -50,7 +54,9 @@ PreparedScan::PreparedScan(Scan given, const Execution& execution) : scan(std::m
     agreement += normals.col(source[i]).dot(surface.normals.col(static_cast<Index>(i))) > 0 ? 1 : -1;
   }
   if (agreement < 0) normals *= -1;
-  centroid = scan.origin + surface.vertices.cast<double>().rowwise().mean();
+  const BodyPoints all{std::vector<std::uint8_t>(surface.vertices.cols(), 1)};
+  centroid = scan.origin + vitruvian::centroid(surface.vertices, surface.faces, all);
+  extent = diameter(surface.vertices, all);
 }
 
 Points3f transform_points(const Points3f& points, const Vec3d& origin, const Mat4d& body_from_scan) {

@@ -16,8 +16,9 @@ namespace vitruvian {
 struct PreparedScan {
   Scan scan;
   Points3f normals;     ///< unit, outward
-  ViewSurface surface;  ///< coarse copy for pictures, file units
-  Vec3d centroid;       ///< scan frame: mean of the coarse copy's vertices
+  ViewSurface surface;  ///< coarse copy for pictures, without floor and strays, file units
+  Vec3d centroid;       ///< scan frame: area-weighted mean of the coarse copy
+  double extent;        ///< largest distance between two of its points, file units
 
   PreparedScan(Scan scan, const Execution& execution);
 };
