@@ -9,8 +9,8 @@ import { StageRail } from "./StageRail";
 import * as state from "./state";
 import { ViewPane } from "./ViewPane";
 
-/** Elements in which letters are typed or that use the keys themselves. */
-const TYPING = "input, select, textarea, dialog";
+/** Elements that use letters and digits themselves. */
+const TYPING = "select, textarea, dialog, input:not([type=radio], [type=checkbox], [type=range])";
 
 export function App() {
   const picker = useRef<HTMLInputElement>(null);
