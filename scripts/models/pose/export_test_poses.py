@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes tests/data/test_poses.csv: 60 poses of the test side, as different as there are, 72 numbers a row (24 joints,
+"""Writes tests/data/test_poses.csv: 200 poses of the test side, as different as there are, 72 numbers a row (24 joints,
 axis-angle, root first)."""
 import argparse
 import os
@@ -9,7 +9,7 @@ import numpy as np
 import cmu
 import skeleton
 
-COUNT = 60
+COUNT = 200
 
 
 def farthest_points(features, count):
