@@ -93,7 +93,7 @@ export interface ViewOptions {
 export const view = signal<ViewOptions>({
   showScan: true,
   showBody: true,
-  scanOpacity: 0.3,
+  scanOpacity: 0.2,
   bodyOpacity: 1,
   wireframe: false,
   split: false,
