@@ -6,8 +6,8 @@
 
 namespace vitruvian {
 
-/// What went wrong, one value a cause that a user can act on. The same codes cross the WASM boundary and appear in
-/// the CLI's `--json` output.
+/// What went wrong, one value a cause that a user can act on. The same codes cross the WASM boundary and
+/// appear in the CLI's `--json` output.
 enum class ErrorCode {
   usage,               ///< an option or setting is wrong or contradicts another
   not_available,       ///< a documented feature that this build does not offer
@@ -24,8 +24,8 @@ enum class ErrorCode {
 /// Stable lower-case name of a code, e.g. "bad_file".
 std::string_view name_of(ErrorCode code) noexcept;
 
-/// The one exception type of the core. The message names the file, the place in it, what is wrong and, where there is
-/// one, the mend.
+/// The one exception type of the core. The message names the file, the place in it, what is wrong and, where
+/// there is one, the mend.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

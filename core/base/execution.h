@@ -18,7 +18,8 @@ class Execution {
   using ProgressCallback = std::function<void(std::string_view stage, double fraction)>;
 
   /// @param threads  number of threads that work in parallel, the calling one included; at least 1.
-  /// @param parent   larger piece of work that this one is part of: its cancel counts here too. Must outlive this.
+  /// @param parent   larger piece of work that this one is part of: its cancel counts here too. Must outlive
+  /// this.
   explicit Execution(int threads = 1, const Execution* parent = nullptr);
   ~Execution();
   Execution(const Execution&) = delete;

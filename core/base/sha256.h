@@ -8,7 +8,8 @@
 
 namespace vitruvian {
 
-/// SHA-256 (FIPS 180-4), fed in pieces. Own code because no package offers one to both native and WASM builds.
+/// SHA-256 (FIPS 180-4), fed in pieces. Own code because no package offers one to both native and WASM
+/// builds.
 class Sha256 {
  public:
   using Digest = std::array<std::uint8_t, 32>;

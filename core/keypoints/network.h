@@ -5,11 +5,13 @@
 
 namespace vitruvian {
 
-/// The two BlazePose networks (models/README.md). Their inputs and outputs are plain float tensors so that any runtime
-/// can run them: OpenCV DNN natively, onnxruntime-web in the page.
+/// The two BlazePose networks (models/README.md). Their inputs and outputs are plain float tensors so that
+/// any runtime can run them: OpenCV DNN natively, onnxruntime-web in the page.
 enum class Network {
-  detector,   ///< input `image` 1x3x224x224, RGB in [-1, 1]; outputs `boxes` 1x2254x12, `scores` 1x2254x1 (logits)
-  landmarks,  ///< input `image` 1x3x256x256, RGB in [0, 1]; outputs `landmarks` 1x195, `presence` 1x1, `heatmap` 1x39x64x64
+  detector,   ///< input `image` 1x3x224x224, RGB in [-1, 1]; outputs `boxes` 1x2254x12, `scores` 1x2254x1
+              ///< (logits)
+  landmarks,  ///< input `image` 1x3x256x256, RGB in [0, 1]; outputs `landmarks` 1x195, `presence` 1x1,
+              ///< `heatmap` 1x39x64x64
 };
 
 /// Runs of one network that can go in one batch (each input is one image; the networks have batch size 1).

@@ -9,7 +9,8 @@ namespace vitruvian {
 
 /// An orthographic camera round a body, in the body frame (metres).
 /// Pixel (u, v), continuous, u to the right, v down, (0, 0) at the upper left corner of the image:
-///   u = width / 2 + pixels_per_metre * right . (x - centre),  v = height / 2 - pixels_per_metre * up . (x - centre).
+///   u = width / 2 + pixels_per_metre * right . (x - centre),  v = height / 2 - pixels_per_metre * up . (x -
+///   centre).
 struct Camera {
   Vec3f right, up, toward_viewer;  ///< orthonormal, right x up = toward_viewer
   Vec3f centre;                    ///< body frame, projects to the image's centre
@@ -25,9 +26,9 @@ struct Camera {
 /// A shaded picture of the scan.
 struct View {
   Camera camera;
-  std::vector<std::uint8_t> rgb;   ///< height x width x 3
-  std::vector<float> depth;        ///< height x width, along toward_viewer from the centre; -infinity where empty
-  int left, top, right, bottom;    ///< silhouette's bounding box in pixels, right and bottom exclusive
+  std::vector<std::uint8_t> rgb;  ///< height x width x 3
+  std::vector<float> depth;  ///< height x width, along toward_viewer from the centre; -infinity where empty
+  int left, top, right, bottom;  ///< silhouette's bounding box in pixels, right and bottom exclusive
 };
 
 /// One BlazePose landmark seen in one view.
@@ -37,7 +38,8 @@ struct ViewLandmark {
   float presence;         ///< 0..1
 };
 
-/// What the landmark network saw in one view: 33 landmarks, presence of a body, and the next region of interest.
+/// What the landmark network saw in one view: 33 landmarks, presence of a body, and the next region of
+/// interest.
 struct ViewLandmarks {
   std::vector<ViewLandmark> landmarks;  ///< 33
   float body_presence = 0;              ///< 0..1

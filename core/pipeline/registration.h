@@ -60,7 +60,8 @@ struct ModelInfo {
 
 /// Milliseconds by stage; a stage that was not run is 0.
 struct Timing {
-  double read = 0, align = 0, project = 0, detect = 0, pose = 0, fit = 0, refine = 0, detail = 0, write = 0, total = 0;
+  double read = 0, align = 0, project = 0, detect = 0, pose = 0, fit = 0, refine = 0, detail = 0, write = 0,
+         total = 0;
 };
 
 /// The result of registering one scan; everything that registration.json holds, and the mesh.
@@ -68,7 +69,7 @@ struct Registration {
   ScanInfo scan;
   ModelInfo model;
   Alignment alignment;
-  std::vector<Keypoint> keypoints;  ///< 22
+  std::vector<Keypoint> keypoints;           ///< 22
   std::optional<BodyParameters> parameters;  ///< none when failed before a fit
   std::vector<RegisteredJoint> joints;
   std::optional<SurfaceError> surface_error;

@@ -16,8 +16,8 @@ enum class Unit { automatic, metre, centimetre, millimetre, inch };
 /// Signed axis of the scan file.
 enum class Axis { automatic, x, y, z, minus_x, minus_y, minus_z };
 
-/// Everything that decides a registration besides the scan and the models; written to registration.json so that it can
-/// be run again.
+/// Everything that decides a registration besides the scan and the models; written to registration.json so
+/// that it can be run again.
 struct Settings {
   Method method = Method::ours;
   AlignMode align = AlignMode::automatic;
