@@ -144,7 +144,7 @@ void RegistrationPipeline::accept(const NetworkReply& reply) {
 
 RegistrationPipeline::Candidate RegistrationPipeline::fit_candidate(const Placement& placement,
                                                                     const UnitCandidate& unit,
-                                                                    SeenLandmarks seen) {
+                                                                    SeenLandmarks seen, bool quick) {
   Candidate candidate;
   candidate.unit = unit;
   candidate.method = placement.method;
@@ -171,7 +171,7 @@ RegistrationPipeline::Candidate RegistrationPipeline::fit_candidate(const Placem
   if (!candidate.landmarks.plain.empty())
     plain = landmark_targets(models_.landmarks, candidate.landmarks.plain);
   HypothesisSettings hypotheses;
-  hypotheses.refit_budget = std::min(hypotheses.refit_budget, refit_budget_);
+  hypotheses.refit_budget = quick ? 0 : std::min(hypotheses.refit_budget, refit_budget_);
   candidate.fit = fit_hypotheses(*fit_model_, target, targets, plain, hypotheses, execution_);
   refit_budget_ -= candidate.fit.refits;
   candidate.stature = standing_stature(models_.body, candidate.fit.state.betas);
@@ -205,11 +205,17 @@ void RegistrationPipeline::fit_placement() {
   }
   start_stage(&Timing::fit);
   execution_.progress("fit", 0);
-  for (const UnitCandidate& unit : units_.candidates) {
-    Candidate candidate = fit_candidate(placements_[placement_], unit, seen);
-    if (!best_ || rank(candidate) < rank(*best_)) best_ = std::move(candidate);
-    if (!best_->fit.bad && stature_excess(best_->stature) == 0 && !units_.ambiguous) break;
+  // Units are told apart by one quick fit each; only the likeliest is worth searching for misplaced limbs.
+  UnitCandidate unit = units_.candidates.front();
+  if (units_.candidates.size() > 1) {
+    double least = 0;
+    for (const UnitCandidate& candidate : units_.candidates) {
+      const double value = rank(fit_candidate(placements_[placement_], candidate, seen, true));
+      if (&candidate == &units_.candidates.front() || value < least) unit = candidate, least = value;
+    }
   }
+  Candidate candidate = fit_candidate(placements_[placement_], unit, seen, false);
+  if (!best_ || rank(candidate) < rank(*best_)) best_ = std::move(candidate);
   ++placement_;
   if (!best_->fit.bad || placement_ >= placements_.size()) {
     finished_ = true;

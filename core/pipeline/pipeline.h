@@ -72,7 +72,9 @@ class RegistrationPipeline {
   void begin_views();
   bool needs_facing() const;
   void fit_placement();
-  Candidate fit_candidate(const Placement& placement, const UnitCandidate& unit, SeenLandmarks seen);
+  /// @param quick  without searching for misplaced limbs or other starts.
+  Candidate fit_candidate(const Placement& placement, const UnitCandidate& unit, SeenLandmarks seen,
+                          bool quick);
   double rank(const Candidate& candidate) const;
 
   const Models& models_;
