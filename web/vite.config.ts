@@ -17,8 +17,8 @@ function notices(): Plugin {
       add("licences/LICENSE.txt", "../LICENSE");
       add("licences/THIRD_PARTY.md", "../THIRD_PARTY.md");
       add("licences/CITATION.cff", "../CITATION.cff");
-      for (const name of readdirSync(new URL("../third_party", import.meta.url))) {
-        add(`licences/third_party/${name}`, `../third_party/${name}`);
+      for (const name of readdirSync(new URL("../scripts/licences", import.meta.url))) {
+        add(`licences/texts/${name}`, `../scripts/licences/${name}`);
       }
     },
   };

@@ -8,5 +8,5 @@ foreach(model generated/body.vbm generated/blazepose_detector.opencv.onnx genera
   install(FILES ${CMAKE_SOURCE_DIR}/models/${model} DESTINATION ${CMAKE_INSTALL_DATADIR}/vitruvian OPTIONAL)
 endforeach()
 install(FILES LICENSE THIRD_PARTY.md CITATION.cff CHANGELOG.md README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY third_party DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY scripts/licences DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES models/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/models)
