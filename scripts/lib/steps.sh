@@ -83,12 +83,10 @@ configure() {
   once "configure-$1" "CMakePresets.json" "$BUILD/$1/build.ninja" cmake --preset "$1"
 }
 
-# build_preset PRESET [TARGET...]
+# build_preset PRESET [TARGET]
 build_preset() {
-  local preset=$1
-  shift
-  configure "$preset" || return $?
-  cmake --build "$BUILD/$preset" -j "$JOBS" ${1:+--target "$@"}
+  configure "$1" || return $?
+  cmake --build "$BUILD/$1" -j "$JOBS" --target "${2:-all}"
 }
 
 copy_native_models() {
@@ -117,7 +115,7 @@ page_build() {
   (cd web && node node_modules/vite/bin/vite.js build --logLevel warn)
 }
 
-# prepare PART...: makes the parts named (native, models, wasm, page). Models (Python) and the native core (C++) do not
+# prepare PART...: makes the parts named (native: the program, tests: it and its tests, models, wasm, page). Models (Python) and the native core (C++) do not
 # need each other and share the cores.
 prepare() {
   local parts=" $* " models="" status=0
@@ -127,12 +125,16 @@ prepare() {
     make_models > "$BUILD/models.log" 2>&1 &
     models=$!
   fi
-  if [[ $parts == *" native "* ]]; then run_step "native core" build_preset native || status=1; fi
+  if [[ $parts == *" tests "* ]]; then
+    run_step "native core and tests" build_preset native || status=1
+  elif [[ $parts == *" native "* ]]; then
+    run_step "native core" build_preset native vitruvian || status=1
+  fi
   if [[ -n $models ]] && ! run_step "models (log: build/models.log)" wait $models; then
     tail -n 20 "$BUILD/models.log" >&2
     status=1
   fi
-  if [[ $parts == *" native "* ]]; then copy_native_models || status=1; fi
+  if [[ $parts == *" native "* || $parts == *" tests "* ]]; then copy_native_models || status=1; fi
   if [[ $parts == *" wasm "* ]]; then run_step "WASM core" build_wasm || status=1; fi
   if [[ $parts == *" page "* ]]; then run_step "page" build_page || status=1; fi
   return $status
