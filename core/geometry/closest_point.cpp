@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -11,9 +12,41 @@ namespace {
 
 constexpr int kLeafTriangles = 6;
 
+// Squared sine of a triangle's first angle below which rounding decides in which region of it a point seems
+// to lie; and the like for points that are far away for the triangle's size.
+constexpr float kNeedle = 1e-4f;
+constexpr float kUnsure = 1e-5f;
+
+/// Best of a triangle's edges and of `inner`, where that lies inside, as barycentric weights.
+Vec3f best_of_edges(const Vec3f& p, const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& inner) {
+  const Vec3f* corners[3] = {&a, &b, &c};
+  Vec3f best = inner;
+  float best_squared = inner.minCoeff() >= 0 ? (inner[0] * a + inner[1] * b + inner[2] * c - p).squaredNorm()
+                                             : std::numeric_limits<float>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const Vec3f &from = *corners[k], edge = *corners[(k + 1) % 3] - from;
+    const float squared_length = edge.squaredNorm();
+    const float t = squared_length > 0 ? std::clamp(edge.dot(p - from) / squared_length, 0.0f, 1.0f) : 0;
+    const float squared = (from + t * edge - p).squaredNorm();
+    if (!(squared >= best_squared)) {
+      best_squared = squared;
+      best.setZero();
+      best[k] = 1 - t;
+      best[(k + 1) % 3] = t;
+    }
+  }
+  return best;
+}
+
 /// Closest point of a triangle as barycentric weights (Ericson, Real-Time Collision Detection, 5.1.5).
 Vec3f closest_barycentric(const Vec3f& p, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   const Vec3f ab = b - a, ac = c - a, ap = p - a;
+  const Vec3f normal = ab.cross(ac);
+  const float squared_size = ab.squaredNorm() * ac.squaredNorm(), squared_normal = normal.squaredNorm();
+  if (!(squared_normal > kNeedle * squared_size)) {
+    const float v = ap.cross(ac).dot(normal) / squared_normal, w = ab.cross(ap).dot(normal) / squared_normal;
+    return best_of_edges(p, a, b, c, {1 - v - w, v, w});
+  }
   const float d1 = ab.dot(ap), d2 = ac.dot(ap);
   if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
   const Vec3f bp = p - b;
@@ -38,10 +71,12 @@ Vec3f closest_barycentric(const Vec3f& p, const Vec3f& a, const Vec3f& b, const 
     const float w = sum > 0 ? (d4 - d3) / sum : 0;
     return {0, 1 - w, w};
   }
-  const float total = va + vb + vc;
-  if (!(total > 0)) return {1, 0, 0};
+  const float total = va + vb + vc;  // squared length of the normal
   const float v = vb / total, w = vc / total;
-  return {1 - v - w, v, w};
+  const Vec3f inner(1 - v - w, v, w);
+  const float reach = std::max({ap.squaredNorm(), bp.squaredNorm(), cp.squaredNorm()});
+  const bool sure = total > kUnsure * std::sqrt(squared_size) * reach;
+  return sure && inner.minCoeff() >= 0 ? inner : best_of_edges(p, a, b, c, inner);
 }
 
 }  // namespace
