@@ -118,7 +118,9 @@ DecimatedMesh cluster_decimate(const Points3f& vertices, const Points3f& normals
   float cell =
       std::sqrt(2.5f * std::max({extent[0] * extent[1], extent[1] * extent[2], extent[0] * extent[2]}) /
                 static_cast<float>(target_vertices));
-  cell = std::max(cell, extent.maxCoeff() * 1e-6f + 1e-30f);
+  // Points on a line have no such faces. Cell numbers must fit 21 bits a dimension.
+  const float least_cell = extent.maxCoeff() * 1e-6f + 1e-30f;
+  cell = std::max({cell, least_cell, extent.maxCoeff() / static_cast<float>(target_vertices)});
   std::vector<int> cluster(count);
   int clusters = 0;
   for (int attempt = 0; attempt < 4; ++attempt) {
@@ -133,17 +135,22 @@ DecimatedMesh cluster_decimate(const Points3f& vertices, const Points3f& normals
     clusters = static_cast<int>(cells.size());
     const float ratio = std::sqrt(static_cast<float>(clusters) / static_cast<float>(target_vertices));
     if (ratio > 0.85f && ratio < 1.15f) break;
-    cell *= ratio;
+    cell = std::max(least_cell, cell * ratio);
   }
   result.vertices = Points3f::Zero(3, clusters);
   result.normals = Points3f::Zero(3, clusters);
+  // Summed relative to each cell's first member: exact however far from the origin or a stray the cell lies.
   std::vector<int> members(clusters, 0);
+  std::vector<Index> first(clusters, 0);
   for (Index i = 0; i < count; ++i) {
-    result.vertices.col(cluster[i]) += vertices.col(i) - low;
-    result.normals.col(cluster[i]) += normals.col(i);
-    ++members[cluster[i]];
+    const int c = cluster[i];
+    if (members[c]++ == 0) first[c] = i;
+    result.vertices.col(c) += vertices.col(i) - vertices.col(first[c]);
+    result.normals.col(c) += normals.col(i);
   }
-  for (int c = 0; c < clusters; ++c) result.vertices.col(c) = result.vertices.col(c) / members[c] + low;
+  for (int c = 0; c < clusters; ++c) {
+    result.vertices.col(c) = result.vertices.col(c) / static_cast<float>(members[c]) + vertices.col(first[c]);
+  }
   normalise_columns(result.normals);
   result.source.assign(clusters, -1);
   std::vector<float> nearest(clusters, 0);
