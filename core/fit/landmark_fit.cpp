@@ -31,6 +31,7 @@ void place_by_torso(const FitModel& model, std::span<const LandmarkTarget> landm
     theirs.setZero();
     for (const LandmarkTarget& l : landmarks) {
       const double w = torso_weight(l);
+      if (!(w > 0)) continue;
       ours += w * landmark_position(skeleton, l);
       theirs += w * l.target;
       total += w;
@@ -43,6 +44,7 @@ void place_by_torso(const FitModel& model, std::span<const LandmarkTarget> landm
   if (!centre(skeleton, ours, theirs)) return;
   Mat3d covariance = Mat3d::Zero();
   for (const LandmarkTarget& l : landmarks) {
+    if (!(torso_weight(l) > 0)) continue;
     covariance += torso_weight(l) * (l.target - theirs) * (landmark_position(skeleton, l) - ours).transpose();
   }
   const Eigen::JacobiSVD<Mat3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -57,6 +59,7 @@ void place_by_torso(const FitModel& model, std::span<const LandmarkTarget> landm
 double landmark_error(const Skeleton& skeleton, std::span<const LandmarkTarget> landmarks) {
   double sum = 0, weights = 0;
   for (const LandmarkTarget& l : landmarks) {
+    if (!(l.weight > 0)) continue;
     sum += l.weight * (landmark_position(skeleton, l) - l.target).norm();
     weights += l.weight;
   }
