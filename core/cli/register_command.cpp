@@ -93,7 +93,9 @@ std::string summary(const Outcome& outcome) {
   if (!outcome.registration) return "error: " + outcome.error;
   const Registration& r = *outcome.registration;
   std::string line = to_string(r.verdict.status) + ", confidence " + fixed(r.verdict.confidence, 2);
-  if (r.surface_error) line += ", mean error " + fixed(r.surface_error->surface_all.mean_mm, 1) + " mm";
+  if (r.surface_error && r.surface_error->surface_all.count > 0) {
+    line += ", mean error " + fixed(r.surface_error->surface_all.mean_mm, 1) + " mm";
+  }
   return line + ", " + fixed(r.timing_ms.total / 1e3, 1) + " s";
 }
 
@@ -109,10 +111,11 @@ std::string batch_table(const std::vector<Outcome>& outcomes) {
     const Registration& r = *outcome.registration;
     std::vector<std::string> row = {name, to_string(r.verdict.status), fixed(r.verdict.confidence, 2)};
     if (r.surface_error) {
-      for (const double value : {r.surface_error->surface_all.mean_mm, r.surface_error->surface_all.p95_mm,
-                                 r.surface_error->scan_to_model.p95_mm}) {
-        row.push_back(fixed(value, 1));
-      }
+      const DistanceStatistics &surface = r.surface_error->surface_all,
+                               &scan = r.surface_error->scan_to_model;
+      row.push_back(surface.count > 0 ? fixed(surface.mean_mm, 1) : "");
+      row.push_back(surface.count > 0 ? fixed(surface.p95_mm, 1) : "");
+      row.push_back(scan.count > 0 ? fixed(scan.p95_mm, 1) : "");
     } else {
       row.insert(row.end(), 3, "");
     }
