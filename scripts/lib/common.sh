@@ -14,6 +14,11 @@ mkdir -p "$STAMPS" "$TOOLS"
 export NODE_PATH=/usr/share/nodejs
 export npm_config_audit=false npm_config_fund=false npm_config_update_notifier=false npm_config_loglevel=error
 
+# Node brings its own list of certificate authorities; the machine's may hold more, as behind a company's proxy.
+if [[ -z ${NODE_EXTRA_CA_CERTS:-} && -r /etc/ssl/certs/ca-certificates.crt ]]; then
+  export NODE_EXTRA_CA_CERTS=/etc/ssl/certs/ca-certificates.crt
+fi
+
 say() { printf '%s\n' "$*"; }
 
 # run_step NAME COMMAND...: runs a step, prints how long it took.
