@@ -1,0 +1,327 @@
+#include "pipeline/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <string>
+
+#include "align/frame.h"
+#include "core/fit/fit_fixtures.h"
+#include "keypoints/blazepose.h"
+#include "pipeline/outcome.h"
+#include "pipeline/result_json.h"
+
+namespace vitruvian {
+namespace {
+
+using testing::default_body;
+
+const Models& models() {
+  static const Models all = [] {
+    const std::string file = VITRUVIAN_SOURCE_DIR "/models/landmarks.json";
+    const std::vector<std::byte> bytes = testing::file_bytes(file);
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return Models{default_body(), testing::shipped_prior(), landmarks_from_json(text, file)};
+  }();
+  return all;
+}
+
+/// A body that stands with hanging arms, one knee bent a little.
+BodyState standing() {
+  BodyState state = BodyState::rest(default_body());
+  const auto turn = [&](int joint, double angle, const Vec3d& axis) {
+    state.rotation[joint] = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+  };
+  turn(16, -1.1, Vec3d::UnitZ());
+  turn(17, 1.0, Vec3d::UnitZ());
+  turn(18, -0.4, Vec3d::UnitY());
+  turn(5, 0.3, Vec3d::UnitX());
+  for (Index k = 0; k < 6; ++k) state.betas[k] = k % 2 ? -0.7 : 0.8;
+  return state;
+}
+
+/// Survey coordinates in millimetres, Z up.
+Mat4d scan_from_body() {
+  Mat4d transform = Mat4d::Identity();
+  Mat3d z_up;
+  z_up << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  transform.topLeftCorner<3, 3>() = 1000 * Eigen::AngleAxisd(0.4, Vec3d::UnitZ()).toRotationMatrix() * z_up;
+  transform.topRightCorner<3, 1>() = Vec3d(250000, -80000, 1200);
+  return transform;
+}
+
+Points3d to_scan(const Points3d& body_points) {
+  const Mat4d t = scan_from_body();
+  return (t.topLeftCorner<3, 3>() * body_points).colwise() + t.topRightCorner<3, 1>();
+}
+
+Scan scan_of(const BodyState& state) {
+  Scan scan;
+  scan.file_name = "standing.ply";
+  scan.origin = scan_from_body().topRightCorner<3, 1>();
+  scan.vertices =
+      (to_scan(posed_vertices<double>(default_body(), state)).colwise() - scan.origin).cast<float>();
+  scan.faces = default_body().faces;
+  return scan;
+}
+
+/// Answers from the true body instead of from the pictures.
+class AllKnowingNetwork {
+ public:
+  explicit AllKnowingNetwork(const BodyState& state) {
+    const Skeleton skeleton = pose_skeleton(default_body(), state);
+    landmarks_scan_ = Points3d::Zero(3, kLandmarkCount);
+    for (const LandmarkOffset& o : models().landmarks) {
+      landmarks_scan_.col(o.landmark) =
+          skeleton.joints.col(o.joint) + skeleton.global[o.frame_joint] * o.offset;
+      known_[o.landmark] = true;
+    }
+    landmarks_scan_ = to_scan(landmarks_scan_);
+  }
+
+  NetworkReply run(const RegistrationPipeline& pipeline, const NetworkRequest& request) const {
+    const PreparedScan& prepared = pipeline.prepared();
+    const Mat4d upright_from_scan = body_from_scan(
+        align_pca(prepared.surface.vertices, default_body().v_template), prepared.centroid, 0.001);
+    const Points3d seen = (upright_from_scan.topLeftCorner<3, 3>() * landmarks_scan_).colwise() +
+                          upright_from_scan.topRightCorner<3, 1>();
+    const std::vector<View>& views = pipeline.landmark_stage()->views();
+    EXPECT_EQ(request.inputs.size(), views.size());
+    NetworkReply reply;
+    for (const View& view : views) {
+      const Region region = region_from_silhouette(view);
+      NetworkOutputs outputs{std::vector<float>(195, 0), {1}, std::vector<float>(39 * 64 * 64, -20)};
+      for (int l = 0; l < kLandmarkCount; ++l) {
+        const Eigen::Vector2f crop = region.crop_from_image(view.camera.project(seen.col(l).cast<float>()),
+                                                            static_cast<float>(kLandmarkCropSize));
+        const float sureness = known_[l] ? 8 : -20;
+        const float values[5] = {crop.x(), crop.y(), 0, sureness, sureness};
+        std::copy_n(values, 5, outputs[0].begin() + 5 * l);
+      }
+      // Points 33 and 34 coincide: no second look.
+      reply.outputs.push_back(std::move(outputs));
+    }
+    return reply;
+  }
+
+ private:
+  Points3d landmarks_scan_;
+  std::array<bool, kLandmarkCount> known_{};
+};
+
+Settings pca_settings() {
+  Settings settings;
+  settings.align = AlignMode::pca;
+  settings.unit = Unit::millimetre;
+  settings.threads = 2;
+  return settings;
+}
+
+Registration registered(const BodyState& truth, const Settings& settings, const Execution& execution) {
+  const AllKnowingNetwork network(truth);
+  RegistrationPipeline pipeline(models(), settings, execution);
+  pipeline.set_scan(scan_of(truth));
+  int requests = 0;
+  while (const auto request = pipeline.next_request()) {
+    ++requests;
+    pipeline.accept(network.run(pipeline, *request));
+  }
+  EXPECT_EQ(requests, 1);
+  return pipeline.finish();
+}
+
+TEST(RegistrationPipeline, RegistersWhatAnAllKnowingNetworkSees) {
+  const BodyState truth = standing();
+  const Registration r = registered(truth, pca_settings(), Execution(2));
+  EXPECT_EQ(r.verdict.status, VerdictStatus::ok);
+  ASSERT_TRUE(r.surface_error && r.parameters);
+  EXPECT_LT(r.surface_error->surface_all.mean_mm, 0.5);
+  EXPECT_LT(r.surface_error->scan_to_model.mean_mm, 0.5);
+  EXPECT_EQ(r.alignment.unit, Unit::millimetre);
+  const Points3d joints = to_scan(pose_skeleton(default_body(), truth).joints);
+  ASSERT_EQ(r.joints.size(), 24u);
+  for (int j = 0; j < 22; ++j) {
+    EXPECT_LT((r.joints[j].scan - joints.col(j)).norm(), 10) << r.joints[j].name;
+    const Vec3d in_body = r.alignment.body_from_scan.topLeftCorner<3, 3>() * r.joints[j].scan +
+                          r.alignment.body_from_scan.topRightCorner<3, 1>();
+    EXPECT_LT((in_body - r.joints[j].body_m).norm(), 1e-8);
+  }
+  // The mesh is in the scan's frame and units, vertex by vertex the scanned body's own.
+  const Points3d vertices = to_scan(posed_vertices<double>(default_body(), truth));
+  ASSERT_EQ(r.registered_vertices.cols(), vertices.cols());
+  EXPECT_LT((r.registered_vertices - vertices).colwise().norm().mean(), 4);
+  EXPECT_EQ(r.vertex_error_mm.size(), static_cast<std::size_t>(vertices.cols()));
+  ASSERT_EQ(r.keypoints.size(), 22u);
+  EXPECT_EQ(r.keypoints[4].joint, "left_knee");
+  ASSERT_TRUE(r.keypoints[4].position_m);
+  EXPECT_LT((*r.keypoints[4].position_m - r.joints[4].body_m).norm(), 0.05);
+}
+
+TEST(RegistrationPipeline, GivesTheSameBytesAgainButForTimes) {
+  const auto json = [] {
+    Registration r = registered(standing(), pca_settings(), Execution(2));
+    r.timing_ms = Timing();
+    return registration_json(r, "1", JsonStyle::pretty);
+  };
+  EXPECT_EQ(json(), json());
+}
+
+TEST(RegistrationPipeline, StopsWhenCancelledAtAnyStage) {
+  for (const std::string stage : {"align", "project", "detect", "fit", "refine"}) {
+    SCOPED_TRACE(stage);
+    Execution execution(2);
+    bool reached = false;
+    execution.on_progress([&](std::string_view now, double) {
+      if (now != stage) return;
+      reached = true;
+      execution.cancel();
+    });
+    try {
+      registered(standing(), pca_settings(), execution);
+      ADD_FAILURE() << "was not cancelled";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    }
+    EXPECT_TRUE(reached);
+  }
+}
+
+TEST(RegistrationPipeline, RefusesToFinishBeforeItsAnswers) {
+  const Execution execution(2);
+  RegistrationPipeline pipeline(models(), pca_settings(), execution);
+  pipeline.set_scan(scan_of(standing()));
+  const auto request = pipeline.next_request();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->network, Network::landmarks);
+  EXPECT_EQ(request->inputs.size(), 8u);
+  EXPECT_THROW(pipeline.finish(), Error);
+  NetworkReply wrong;
+  wrong.outputs.resize(7);
+  EXPECT_THROW(pipeline.accept(wrong), Error);
+}
+
+TEST(RegistrationPipeline, RefusesViewsOtherThanTwoOrEight) {
+  const Execution execution(1);
+  Settings settings;
+  settings.views = 5;
+  try {
+    RegistrationPipeline pipeline(models(), settings, execution);
+    ADD_FAILURE() << "was accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+  }
+}
+
+TEST(PreparedScan, TurnsInsideOutScansAndFindsTheirSize) {
+  Scan scan = scan_of(standing());
+  const Execution execution(1);
+  const PreparedScan right(scan, execution);
+  scan.faces = scan.faces.colwise().reverse().eval();
+  const PreparedScan inside_out(scan, execution);
+  EXPECT_LT((right.normals - inside_out.normals).cwiseAbs().maxCoeff(), 1e-4f);
+  EXPECT_NEAR(right.extent, 1000 * standing_stature(default_body(), standing().betas), 60);
+  const Vec3d middle = to_scan(posed_vertices<double>(default_body(), standing())).rowwise().mean();
+  EXPECT_LT((right.centroid - middle).norm(), 300);
+}
+
+TEST(PreparedScan, LeavesAFloorOutOfThePictures) {
+  Scan scan = scan_of(standing());
+  const PreparedScan alone(scan, Execution(1));
+  constexpr int kSide = 60;
+  const Index body_vertices = scan.vertices.cols(), body_faces = scan.faces.cols();
+  const float height = scan.vertices.row(2).minCoeff() - 15;
+  const Vec3f centre = scan.vertices.rowwise().mean();
+  scan.vertices.conservativeResize(3, body_vertices + kSide * kSide);
+  scan.faces.conservativeResize(3, body_faces + 2 * (kSide - 1) * (kSide - 1));
+  Index face = body_faces;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const int row = i / kSide, column = i % kSide;
+    scan.vertices.col(body_vertices + i) =
+        Vec3f(centre[0] + 40.0f * static_cast<float>(row - kSide / 2),
+              centre[1] + 40.0f * static_cast<float>(column - kSide / 2), height);
+    if (row + 1 == kSide || column + 1 == kSide) continue;
+    const int at = static_cast<int>(body_vertices) + i;
+    scan.faces.col(face++) << at, at + kSide, at + kSide + 1;
+    scan.faces.col(face++) << at, at + kSide + 1, at + 1;
+  }
+  const PreparedScan standing_on_it(scan, Execution(1));
+  EXPECT_NEAR(standing_on_it.extent, alone.extent, 100);
+  EXPECT_LT((standing_on_it.centroid - alone.centroid).norm(), 100);
+}
+
+TEST(PlacedScan, LiesInTheBodyFrameWithUnitNormals) {
+  const BodyState truth = standing();
+  const Execution execution(2);
+  const PreparedScan prepared(scan_of(truth), execution);
+  const PlacedScan placed(prepared, scan_from_body().inverse(), execution);
+  const Points3f expected = posed_vertices<float>(default_body(), truth);
+  EXPECT_LT((placed.points() - expected).cwiseAbs().maxCoeff(), 1e-5f);
+  EXPECT_LT((placed.normals() - vertex_normals(expected, default_body().faces)).cwiseAbs().maxCoeff(), 2e-3f);
+  const ScanSurface surface = placed.surface();
+  ASSERT_NE(surface.mesh, nullptr);
+  EXPECT_LT(surface.mesh->query(expected.col(100)).distance, 1e-5f);
+  EXPECT_LT(surface.tree.nearest(expected.col(100)).squared_distance, 1e-9f);
+
+  Scan cloud = scan_of(truth);
+  cloud.faces.resize(3, 0);
+  const PreparedScan prepared_cloud(cloud, execution);
+  EXPECT_EQ(PlacedScan(prepared_cloud, scan_from_body().inverse(), execution).surface().mesh, nullptr);
+  // Normals of the bare cloud point outward too, but for folds between touching skin.
+  EXPECT_GT(
+      ((prepared_cloud.normals.array() * prepared.normals.array()).colwise().sum() > 0).cast<double>().mean(),
+      0.93);
+}
+
+std::vector<Landmark3d> some_landmarks() {
+  std::vector<Landmark3d> landmarks(kLandmarkCount);
+  for (int l = 0; l < kLandmarkCount; ++l) {
+    landmarks[l] = {Vec3f(static_cast<float>(l), 1, 2), 0.9f, 0.005f};
+  }
+  return landmarks;
+}
+
+TEST(LandmarkTargets, TrustLandmarksOnWhichTheViewsAgree) {
+  std::vector<Landmark3d> landmarks = some_landmarks();
+  landmarks[15].residual = 0.06f;
+  landmarks[16].residual = 5;
+  landmarks[25].confidence = 0;
+  const std::vector<LandmarkTarget> targets = landmark_targets(models().landmarks, landmarks);
+  ASSERT_EQ(targets.size(), models().landmarks.size());
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const LandmarkOffset& offset = models().landmarks[i];
+    EXPECT_EQ(targets[i].landmark, offset.landmark);
+    EXPECT_EQ(targets[i].target, landmarks[offset.landmark].position.cast<double>());
+    const double share = offset.landmark == 15   ? 0.5
+                         : offset.landmark == 16 ? 0.15
+                         : offset.landmark == 25 ? 0
+                                                 : 1;
+    EXPECT_NEAR(targets[i].weight, share * offset.weight, 1e-6) << offset.landmark;
+  }
+}
+
+TEST(SmplKeypoints, NameTheirSourceAndHideWhatIsUnknown) {
+  std::vector<Landmark3d> landmarks = some_landmarks();
+  landmarks[13].confidence = 0;  // left elbow
+  const std::vector<Keypoint> keypoints = smpl_keypoints(landmarks);
+  ASSERT_EQ(keypoints.size(), 22u);
+  for (std::size_t j = 0; j < 22; ++j) EXPECT_EQ(keypoints[j].joint, kSmplJointNames[j]);
+  EXPECT_EQ(keypoints[18].source, KeypointSource::none);
+  EXPECT_FALSE(keypoints[18].position_m);
+  EXPECT_EQ(keypoints[18].confidence, 0);
+  EXPECT_EQ(keypoints[19].source, KeypointSource::detected);
+  EXPECT_EQ(keypoints[0].source, KeypointSource::derived);
+}
+
+TEST(Outcome, StatureAndUnits) {
+  const Eigen::VectorXd mean = Eigen::VectorXd::Zero(default_body().beta_count());
+  const Points3f& rest = default_body().v_template;
+  EXPECT_NEAR(standing_stature(default_body(), mean), rest.row(1).maxCoeff() - rest.row(1).minCoeff(), 1e-5);
+  for (const Unit unit : {Unit::metre, Unit::centimetre, Unit::millimetre, Unit::inch}) {
+    EXPECT_EQ(unit_named(to_string(unit)), unit);
+  }
+  EXPECT_EQ(unit_named("furlong"), Unit::automatic);
+}
+
+}  // namespace
+}  // namespace vitruvian
