@@ -123,7 +123,8 @@ std::vector<BodyState> search_limb(const FitModel& model, const ScanTarget& scan
 
   std::vector<BodyState> result;
   std::vector<Index> taken;
-  for (const auto& [value, c] : ranking) {
+  for (const auto& ranked : ranking) {
+    const Index c = ranked.second;
     const bool distinct = std::all_of(taken.begin(), taken.end(), [&](Index t) {
       return Eigen::AngleAxisd(Mat3d(upper(t).transpose() * upper(c))).angle() >= kDistinct;
     });
