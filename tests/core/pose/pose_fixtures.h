@@ -28,6 +28,8 @@ inline const PosePrior& shipped_prior() {
   return prior;
 }
 
+constexpr std::size_t kUnusualPoses = 60;
+
 /// Motion-capture poses that the prior has not learnt from: 3 x 24 axis-angle each, root first.
 inline std::vector<Points3d> test_side_poses() {
   std::ifstream file(VITRUVIAN_SOURCE_DIR "/tests/data/test_poses.csv");
@@ -39,7 +41,8 @@ inline std::vector<Points3d> test_side_poses() {
     for (Index i = 0; i < 72 && std::getline(fields, field, ','); ++i) pose.data()[i] = std::stod(field);
     poses.push_back(pose);
   }
-  if (poses.size() != 60) throw std::runtime_error("tests/data/test_poses.csv: 60 rows expected");
+  if (poses.size() < kUnusualPoses) throw std::runtime_error("tests/data/test_poses.csv: too few rows");
+  poses.resize(kUnusualPoses);
   return poses;
 }
 
