@@ -8,7 +8,7 @@
 namespace vitruvian {
 namespace {
 
-constexpr long kLargestCount = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t kLargestCount = std::numeric_limits<std::int32_t>::max();
 
 template <typename Enum>
 Enum named(const JsonValue& value) {

@@ -93,12 +93,12 @@ double JsonValue::number() const {
   return number;
 }
 
-long JsonValue::whole(long low, long high) const {
+std::int64_t JsonValue::whole(std::int64_t low, std::int64_t high) const {
   const double value = number();
   if (value != std::floor(value) || value < static_cast<double>(low) || value > static_cast<double>(high)) {
     fail("a whole number from " + std::to_string(low) + " to " + std::to_string(high) + " is expected");
   }
-  return static_cast<long>(value);
+  return static_cast<std::int64_t>(value);
 }
 
 std::string JsonValue::text() const {

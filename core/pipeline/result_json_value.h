@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -35,7 +36,7 @@ class JsonValue {
   /// A finite number.
   double number() const;
   /// A whole number in [low, high].
-  long whole(long low, long high) const;
+  std::int64_t whole(std::int64_t low, std::int64_t high) const;
   std::string text() const;
   /// Three numbers.
   Vec3d vector3() const;
