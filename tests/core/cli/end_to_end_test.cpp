@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -130,6 +131,33 @@ TEST_F(EndToEnd, TheSameBodyInTwoFramesAndUnitsGivesTheSameMesh) {
   EXPECT_EQ(without_times("again/z_up"), without_times("two/z_up"));
   EXPECT_EQ(read("again/z_up/registered.ply"), read("two/z_up/registered.ply"));
   EXPECT_EQ(read("again/z_up/errors.csv"), read("two/z_up/errors.csv"));
+}
+
+// Front and side view mirror a body easily; the raised arm must stay the left one, as published and as ours.
+TEST_F(EndToEnd, ARaisedLeftArmStaysLeftWithTwoViewsAndWithEight) {
+  BodyState state = BodyState::rest(default_body());
+  const auto index = [](std::string_view name) {
+    const auto& names = default_body().joint_names;
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  // About +Z the left arm, along +X, goes up; the right one, along -X, goes down.
+  for (const char* shoulder : {"left_shoulder", "right_shoulder"}) {
+    state.rotation[index(shoulder)] = Eigen::AngleAxisd(1.2, Vec3d::UnitZ()).toRotationMatrix();
+  }
+  const std::string scan = write_body_scan("arm.ply", state, Mat4d::Identity());
+  for (const char* views : {"2", "8"}) {
+    const std::string out = std::string("views") + views;
+    ASSERT_EQ(run({"register", scan, "--out", path(out), "--views", views, "--quiet"}), 0) << error();
+    const Registration result = registration(out + "/arm");
+    const Keypoint &left = result.keypoints[index("left_wrist")],
+                   &right = result.keypoints[index("right_wrist")];
+    ASSERT_TRUE(left.position_m && right.position_m);
+    EXPECT_GT(left.position_m->y(), right.position_m->y() + 0.5) << views << " views";
+    EXPECT_GT(left.position_m->x(), right.position_m->x()) << views << " views";
+    EXPECT_GT(result.joints[index("left_wrist")].body_m.y(),
+              result.joints[index("right_wrist")].body_m.y() + 0.5);
+    EXPECT_EQ(result.verdict.status, VerdictStatus::ok);
+  }
 }
 
 // Something that is no body must not be called one.
