@@ -49,8 +49,8 @@ class Session {
 
   /// Starts to read a scan; replaces the one before and all that was found in it.
   void open(Buffer file, std::string name);
-  /// `{"vertices", "faces", "decimated", "origin", "notes", "positions", "normals", "indices"}` of the scan that was
-  /// opened.
+  /// `{"vertices", "faces", "decimated", "origin", "notes", "positions", "normals", "indices"}` of the scan
+  /// that was opened.
   std::string scan_report() const;
 
   /// Starts to register the opened scan. The task ends at the first network request, or with the result.
