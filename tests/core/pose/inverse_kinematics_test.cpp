@@ -113,6 +113,14 @@ TEST(InverseKinematics, RecoversTheJointsOfUnseenPoses) {
   EXPECT_LT(worst[54], 0.060);
 }
 
+// The search ends at its iteration limit. Under WASM, whose rounding differs, two searches end up to 3.2e-4
+// apart.
+#ifdef __EMSCRIPTEN__
+constexpr double kSameCost = 5e-4;
+#else
+constexpr double kSameCost = 1e-4;
+#endif
+
 TEST(InverseKinematics, FollowsARotatedAndMovedBody) {
   const BodyModel model = skeleton_model(1);
   const PosePrior& prior = shipped_prior();
@@ -124,8 +132,7 @@ TEST(InverseKinematics, FollowsARotatedAndMovedBody) {
     const Points3d moved = (rotation_from_vector<double>(turn) * targets).colwise() + Vec3d(5, -3, 2);
     const auto result =
         solve_inverse_kinematics(model, prior.vae, moved, Eigen::VectorXd::Ones(22), {}, kExecution);
-    // The search ends at its iteration limit, a little apart on every platform.
-    EXPECT_NEAR(result.cost, base.cost, 0.05 * base.cost);
+    EXPECT_NEAR(result.cost, base.cost, kSameCost);
     EXPECT_LT((result.pose - base.pose).rightCols(23).cwiseAbs().maxCoeff(), 0.05);
   }
 }
