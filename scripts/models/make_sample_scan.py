@@ -14,19 +14,14 @@ import os
 import sys
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 import array_file
 from body import scanner
-from body.bone_segments import bone_segments
-from body.characters import Shapes, draw
+from body.characters import draw
 from body.modifiers import PREFIX, SUFFIX, Modifiers
 from body.package import TARBALL_SHA256, NotAdmitted, Package
-from body.skeleton import JOINTS, joint_heads
-from body.skin_weights import bone_heat, limited, smoothed
-from body.subdivide import catmull_clark, split_long_edges
-from body.surface import closed_skin, opened_and_capped
-from body.template import rig_bone_names
+from body.rigged import RiggedCharacter
+from body.subdivide import split_long_edges
 
 SEED = 2
 LONGEST_EDGE = 0.0095
@@ -34,7 +29,6 @@ NOISE = 0.001
 YAW_DEGREES = 205.0
 # Where the scanner's origin lies below the feet and beside the person, metres.
 OFFSET = np.array([0.12, -0.31, 0.0])
-INFLUENCES = 6
 
 # Targets the model's shape space knows nothing of, and how much of each.
 OWN_FEATURES = {
@@ -68,9 +62,6 @@ POSE = {
 }  # fmt: skip
 FINGER_CURL_DEGREES = {"1": (4, 8, 10), "2": (12, 16, 10), "3": (16, 20, 12), "4": (18, 22, 14), "5": (18, 24, 16)}
 
-# The 22 joints of the truth file: all but the hands.
-TRUTH_JOINTS = JOINTS[:22]
-
 SKIN, HAIR, SHORTS = (214, 168, 140), (62, 46, 38), (70, 78, 92)
 
 
@@ -88,37 +79,6 @@ def identity(package, modifiers, rng):
     for name, weight in OWN_FEATURES.items():
         amounts[PREFIX + name + SUFFIX] = weight
     return amounts
-
-
-def finger_curls(ends, names):
-    """{bone: rotation vector in radians} that curl the fingers of both hands towards the palms."""
-    out = {}
-    for suffix, sign in ((".L", 1.0), (".R", -1.0)):
-        wrist = ends[names.index("wrist" + suffix), 0]
-        index, pinky = (ends[names.index(f"finger{k}-1{suffix}"), 0] for k in "25")
-        back = sign * np.cross(index - wrist, pinky - wrist)
-        for finger, angles in FINGER_CURL_DEGREES.items():
-            for k, angle in enumerate(angles, 1):
-                bone = f"finger{finger}-{k}{suffix}"
-                head, tail = ends[names.index(bone)]
-                axis = np.cross(back, tail - head)
-                out[bone] = axis / np.linalg.norm(axis) * np.radians(angle)
-    return out
-
-
-def posed(vertices, weights, ends, names, parents, pose):
-    """(posed vertices, posed heads [B,3]) by linear blending over all bones."""
-    turn, head = np.empty((len(names), 3, 3)), np.empty((len(names), 3))
-    for k, name in enumerate(names):
-        turn[k] = Rotation.from_rotvec(pose.get(name, np.zeros(3))).as_matrix()
-        head[k] = ends[k, 0]
-        if parents[k] >= 0:
-            p = parents[k]
-            turn[k] = turn[p] @ turn[k]
-            head[k] = turn[p] @ (ends[k, 0] - ends[p, 0]) + head[p]
-    shift = head - np.einsum("bij,bj->bi", turn, ends[:, 0])
-    blend = (weights @ turn.reshape(-1, 9)).reshape(-1, 3, 3)
-    return np.einsum("vij,vj->vi", blend, vertices) + weights @ shift, head
 
 
 def colours(rest, rng):
@@ -152,29 +112,11 @@ def make_scan(package):
     """(vertices [V,3] mm, colours [V,3], faces [F,3], {joint: [x,y,z] mm}), scan frame: Z up, turned by YAW_DEGREES."""
     rng = np.random.default_rng(SEED)
     modifiers = Modifiers(package)
-    names = rig_bone_names(package)
-    parents = [names.index(package.bones[n][2]) if package.bones[n][2] in names else -1 for n in names]
-    lists = [[package.joint_vertices[package.bones[name][e]]] for name in names for e in (0, 1)]
-    faces, kept = closed_skin(package.skin, package.quads)
-    amounts = identity(package, modifiers, rng)
-    shapes = Shapes(package, [(name, False) for name in amounts], kept, lists)
-    weights = np.array([list(amounts.values())], np.float32)
-    planar = shapes.skin(weights)
-    skin = planar.reshape(3, -1).T.astype(float)
-    ends = shapes.joints(weights)[0].reshape(-1, 2, 3)
-
-    begin, end, owner = bone_segments(names, ends, skin)
-    heat = bone_heat(skin, faces, begin, end, owner, len(names))
-    rig = limited(smoothed(heat, faces, np.full(len(skin), 0.4), 4), INFLUENCES)
-    pose = {bone: np.radians(vector) for bone, vector in POSE.items()} | finger_curls(ends, names)
-    moved, heads = posed(skin, rig, ends, names, parents, pose)
-
-    place = np.full(len(package.skin), -1)
-    place[kept] = np.arange(len(kept))
-    polygons = [place[corners] for corners in opened_and_capped(package.skin, package.quads)]
-    fine, quads = catmull_clark(moved, polygons)
-    rest, _ = catmull_clark(skin, polygons)
-    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    character = RiggedCharacter(package, identity(package, modifiers, rng))
+    pose = {bone: np.radians(vector) for bone, vector in POSE.items()} | character.finger_curls(FINGER_CURL_DEGREES)
+    moved, heads = character.posed(pose)
+    fine, triangles = character.finer(moved)
+    rest, _ = character.finer(character.skin)
     both, triangles = split_long_edges(np.concatenate([fine, rest], 1), triangles, LONGEST_EDGE)
     fine, rest = both[:, :3], both[:, 3:]
 
@@ -186,11 +128,7 @@ def make_scan(package):
     yaw = np.radians(YAW_DEGREES)
     turn = np.array([[np.cos(yaw), 0, np.sin(yaw)], [np.sin(yaw), 0, -np.cos(yaw)], [0, 1, 0]])
     shift = OFFSET - turn @ [0, fine[:, 1].min(), 0]
-    joints = {
-        joint: ((turn @ heads[[names.index(b) for b in bones]].mean(0) + shift) * 1e3).round(2).tolist()
-        for joint, bones in joint_heads().items()
-        if joint in TRUTH_JOINTS
-    }
+    joints = {joint: ((turn @ p + shift) * 1e3).round(2).tolist() for joint, p in character.joints(heads).items()}
     return (measured[used] @ turn.T + shift) * 1e3, colour[used], triangles.reshape(-1, 3), joints
 
 
