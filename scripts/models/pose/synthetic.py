@@ -358,6 +358,26 @@ hugging = _places("hugging", [[-0.05, 0.35, 0.32], [0.0, 0.25, 0.40], [-0.12, 0.
 hands_together = _places("hands_together", [[0.02, 0.20, 0.28], [0.02, 0.35, 0.25], [0.02, 0.0, 0.25], [0.02, -0.15, 0.20]], 0.03)
 
 
+def _one_hand(name, places, other_places, spread=0.04):
+    """One hand at one set of places, the other at another; which hand is drawn at random. For tests alone: the prior was
+    made without them."""
+    def arms(r, table, rng):
+        n = len(r)
+        left_acts = rng.random(n) < 0.5
+        acting = np.asarray(places, float)[rng.integers(0, len(places), n)]
+        resting = np.asarray(other_places, float)[rng.integers(0, len(other_places), n)]
+        targets = {side: _around(rng, n, np.where((left_acts == (side == "left"))[:, None], acting, resting)
+                                 * ([1, 1, 1] if side == "left" else [-1, 1, 1]), spread) for side in SIDES}
+        return _reach(r, table, rng, targets)
+    arms.__name__ = name
+    return arms
+
+
+_HANGING = [[0.30, -0.10, 0.05], [0.34, -0.06, 0.12], [0.28, -0.12, 0.0]]
+shaking_hands = _one_hand("shaking_hands", [[0.05, 0.15, 0.50], [0.0, 0.22, 0.52], [0.12, 0.10, 0.45]], _HANGING)
+pushing = _places("pushing", [[0.14, 0.35, 0.52], [0.18, 0.28, 0.50], [0.16, 0.42, 0.45], [0.12, 0.22, 0.42]], 0.04)
+
+
 def arms_crossed(r, table, rng):
     n = len(r)
     height = rng.uniform(0.10, 0.27, n)
