@@ -141,7 +141,7 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
     if (!first && budget <= 0) break;
     const std::vector<LandmarkTarget> targets = start.plain ? plain : exchanged(landmarks, start);
     Fit fit;
-    fit.state = fit_landmarks(model, targets);
+    fit.state = first && settings.landmark_fit ? *settings.landmark_fit : fit_landmarks(model, targets);
     fit_surface(model, scan, FitSchedule::coarse(), targets, fit.state, execution);
     if (!first) --budget;
     // A start that ends where an earlier one did would only repeat its repairs.

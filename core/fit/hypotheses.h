@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,10 @@ struct HypothesisSettings {
   double hopeless_scan_to_model_p95 = 0.09;
   int repair_rounds = 3;
   int candidates_per_limb = 2;
-  double least_gain = 0.0005;  ///< m of FitScore::total()
-  int refit_budget = 48;       ///< coarse surface fits beyond the first
-  double same_pose = 0.06;     ///< m, largest joint distance at which two starts count as one
+  double least_gain = 0.0005;             ///< m of FitScore::total()
+  int refit_budget = 48;                  ///< coarse surface fits beyond the first
+  double same_pose = 0.06;                ///< m, largest joint distance at which two starts count as one
+  std::optional<BodyState> landmark_fit;  ///< of the first start, when it was done before
 };
 
 struct HypothesisResult {

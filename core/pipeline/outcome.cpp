@@ -15,19 +15,6 @@ namespace {
 constexpr int kRefineSamples = 20000;
 constexpr double kSureKeypoint = 0.5;
 
-Alignment describe_alignment(const OutcomeInput& input) {
-  Alignment alignment;
-  alignment.body_from_scan = input.body_from_scan;
-  alignment.canonical_from_body.topLeftCorner<3, 3>() = canonical_from_body_rotation();
-  alignment.unit = unit_named(input.unit.unit);
-  alignment.metres_per_unit = input.unit.metres_per_unit;
-  const Mat3d rotation = input.body_from_scan.topLeftCorner<3, 3>();
-  alignment.up = nearest_axis(rotation.row(1).transpose());
-  alignment.front = nearest_axis(rotation.row(2).transpose());
-  alignment.method = input.method;
-  return alignment;
-}
-
 std::vector<JointFinding> limit_excess(const BodyModel& body, const PosePrior& prior,
                                        const BodyState& state) {
   std::vector<JointFinding> findings;
@@ -59,6 +46,20 @@ Points3d scan_from_body(const OutcomeInput& input, const Points3d& body_points) 
 }
 
 }  // namespace
+
+Alignment describe_alignment(const Mat4d& body_from_scan, const UnitCandidate& unit,
+                             const std::string& method) {
+  Alignment alignment;
+  alignment.body_from_scan = body_from_scan;
+  alignment.canonical_from_body.topLeftCorner<3, 3>() = canonical_from_body_rotation();
+  alignment.unit = unit_named(unit.unit);
+  alignment.metres_per_unit = unit.metres_per_unit;
+  const Mat3d rotation = body_from_scan.topLeftCorner<3, 3>();
+  alignment.up = nearest_axis(rotation.row(1).transpose());
+  alignment.front = nearest_axis(rotation.row(2).transpose());
+  alignment.method = method;
+  return alignment;
+}
 
 double standing_stature(const BodyModel& body, const Eigen::VectorXd& betas) {
   VertexMatrix<float> rest;
@@ -104,7 +105,7 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
                  static_cast<long>(scan.faces.cols())};
   result.model = {body.name,           body.family,       body.sha256,           input.settings.gender,
                   body.vertex_count(), body.face_count(), input.fit_model.betas, body.joint_count()};
-  result.alignment = describe_alignment(input);
+  result.alignment = describe_alignment(input.body_from_scan, input.unit, input.method);
   result.keypoints = smpl_keypoints(input.landmarks.swap_aware);
   result.parameters = BodyParameters{state.betas, state.axis_angle(), state.translation};
   const Points3d joints_scan = scan_from_body(input, skeleton.joints);

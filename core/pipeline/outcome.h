@@ -29,6 +29,11 @@ struct OutcomeInput {
 /// frame.
 Registration make_outcome(const OutcomeInput& input, const Execution& execution);
 
+/// The transform in the words of the report.
+/// @param method  how it was found.
+Alignment describe_alignment(const Mat4d& body_from_scan, const UnitCandidate& unit,
+                             const std::string& method);
+
 /// Height of the body with these betas in its rest pose, m.
 double standing_stature(const BodyModel& body, const Eigen::VectorXd& betas);
 

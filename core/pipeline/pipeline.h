@@ -1,19 +1,21 @@
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "align/units.h"
 #include "align/up_detector.h"
 #include "fit/hypotheses.h"
 #include "keypoints/network.h"
+#include "pipeline/attempt.h"
 #include "pipeline/landmark_stage.h"
 #include "pipeline/models.h"
 #include "pipeline/prepared_scan.h"
 #include "pipeline/registration.h"
+#include "pipeline/stage.h"
 
 namespace vitruvian {
 
@@ -26,7 +28,15 @@ namespace vitruvian {
 ///   const Registration result = pipeline.finish();
 ///
 /// next_request() does the work between two requests: pictures, triangulation, and the fit of a finished
-/// hypothesis.
+/// hypothesis. It can stop after an earlier stage, whose finding is then there to look at; settings can be
+/// changed before going on, and only the stages that they touch are worked again:
+///
+///   while (auto request = pipeline.next_request(PipelineStage::align)) pipeline.accept(run(*request));
+///   show(pipeline.align_finding());
+///   settings.front = Axis::x;
+///   pipeline.configure(settings);
+///
+/// Stepping leads to the same result as going through at once, byte for byte.
 class RegistrationPipeline {
  public:
   /// @param models, execution  must outlive the object.
@@ -34,48 +44,84 @@ class RegistrationPipeline {
   RegistrationPipeline(const Models& models, const Settings& settings, const Execution& execution);
   ~RegistrationPipeline();
 
-  /// @throws Error(no_geometry).
-  void set_scan(Scan scan);
+  /// @throws Error(no_geometry), Error(cancelled).
+  void set_scan(Scan scan) { set_scan(std::make_shared<const Scan>(std::move(scan))); }
+  void set_scan(std::shared_ptr<const Scan> scan);
+  bool has_scan() const { return scan_ != nullptr; }
   /// @param read_ms  time spent on reading the file, for the report.
-  void set_read_time(double read_ms) { timing_.read = read_ms; }
+  void set_read_time(double read_ms) { read_ms_ = read_ms; }
 
-  std::optional<NetworkRequest> next_request();
+  /// Takes other settings over and forgets the stages that they can alter. @throws as the constructor, with
+  /// nothing changed.
+  void configure(const Settings& settings);
+  /// Forgets `stage` and all later ones, so that they are worked again. After a cancel or an error: forgets
+  /// what the stage under way had done when given that stage.
+  void forget(PipelineStage stage);
+
+  /// @param until  the last stage to work.
+  /// @return nothing when that stage is reached.
+  std::optional<NetworkRequest> next_request(PipelineStage until = PipelineStage::fit);
+  /// Takes the answer to the current request. @throws Error(internal) when nothing is asked or the reply does
+  /// not fit.
   void accept(const NetworkReply& reply);
-  /// Last stages: refinement, errors, verdict. Call once, after next_request() has returned nothing.
+  /// Refinement, errors, verdict. After the fit has been reached; gives the same each time, but for times.
+  /// @throws Error(internal) before that.
   Registration finish();
 
-  /// What the stages saw, for display. Valid after set_scan(); landmarks once seen.
+  bool reached(PipelineStage stage) const;
+
+  /// What align found; after the fit, what the fit decided.
+  struct AlignFinding {
+    Alignment alignment;
+    double height_m;        ///< extent of the scan along the body's up, floor and strays left out
+    bool front_is_known;    ///< false: nothing tells front from back, the heading is arbitrary
+    std::string unit_note;  ///< plain words when another unit is possible too, else empty
+  };
+  /// @throws Error(internal) before align is reached.
+  AlignFinding align_finding() const;
+  /// Pictures, and what was seen in them, of the placement at work or, after the fit, of the best; null
+  /// before there are any.
+  const LandmarkStage* landmark_stage() const;
+  /// The 22 joints of the contract, body frame. @throws Error(internal) before keypoints are reached.
+  std::vector<Keypoint> keypoints() const;
+  /// The body that the fit starts from, body frame. @throws Error(internal) before the pose is reached.
+  const BodyState& initial_pose() const;
+
+  /// Valid after set_scan().
   const PreparedScan& prepared() const { return *scan_; }
-  const LandmarkStage* landmark_stage() const { return landmark_stage_.get(); }
 
  private:
-  /// One assumption of how the scan lies.
-  struct Placement {
-    Mat3d rotation;  // upright_from_scan, any heading
-    Vec3d trunk;     // upright frame: direction along which the pictures are upright
-    std::string method;
-    bool facing_known = false;
-  };
-  /// A placement that was looked at and fitted.
+  /// A placement that was fitted.
   struct Candidate {
+    std::size_t attempt = 0;
     Mat4d body_from_scan;
     UnitCandidate unit;
-    std::string method;
     SeenLandmarks landmarks;  // body frame
+    BodyState initial;        // posed by them alone
     HypothesisResult fit;
     double stature = 0;  // m, of the fitted body, standing
   };
+  /// The search for the best placement and unit.
+  struct Search {
+    std::size_t at = 0;  // the attempt at work
+    int refit_budget;    // surface fits that are left for all of them, beyond their first ones
+    std::optional<Candidate> best;
+    bool done = false;
 
-  using Clock = std::chrono::steady_clock;
-  void start_stage(double Timing::*stage);
-  void begin_placements();
-  void begin_views();
-  bool needs_facing() const;
-  void fit_placement();
+    Search();
+  };
+
+  std::optional<NetworkRequest> work(PipelineStage until);
+  bool find_placements(std::optional<NetworkRequest>& request);
+  AttemptContext context();
+  void choose_units();
+  void fit_attempt();
   /// @param quick  without searching for misplaced limbs or other starts.
-  Candidate fit_candidate(const Placement& placement, const UnitCandidate& unit, SeenLandmarks seen,
-                          bool quick);
+  Candidate fit_candidate(std::size_t attempt, const UnitCandidate& unit, bool quick);
   double rank(const Candidate& candidate) const;
+  const Attempt& shown() const;
+  const UnitCandidate& shown_unit() const;
+  void require(PipelineStage stage) const;
 
   const Models& models_;
   Settings settings_;
@@ -84,18 +130,13 @@ class RegistrationPipeline {
 
   std::unique_ptr<PreparedScan> scan_;
   std::unique_ptr<ViewSurface> detector_surface_;
-  std::unique_ptr<UpDetector> up_detector_;
-  std::unique_ptr<LandmarkStage> landmark_stage_;
+  std::unique_ptr<UpDetector> up_detector_;  // knows the scan alone: no setting makes it look again
   UnitGuess units_;
-  std::vector<Placement> placements_;
-  std::size_t placement_ = 0;
-  std::optional<Candidate> best_;
-  int refit_budget_ = 0;
-  bool finished_ = false;
+  std::vector<Attempt> attempts_;
+  Search search_;
 
-  Timing timing_;
-  double Timing::*current_stage_ = nullptr;
-  Clock::time_point stage_began_, began_;
+  StageClock clock_;
+  double read_ms_ = 0;
 };
 
 /// One-shot registration with a function that runs the networks.

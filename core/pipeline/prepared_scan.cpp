@@ -36,7 +36,11 @@ Points3f initial_normals(const Scan& scan, const Execution& execution) {
 
 }  // namespace
 
-PreparedScan::PreparedScan(Scan given, const Execution& execution) : scan(std::move(given)) {
+PreparedScan::PreparedScan(Scan given, const Execution& execution)
+    : PreparedScan(std::make_shared<const Scan>(std::move(given)), execution) {}
+
+PreparedScan::PreparedScan(std::shared_ptr<const Scan> given, const Execution& execution)
+    : owner(std::move(given)), scan(*owner) {
   normals = initial_normals(scan, execution);
   execution.progress("align", 0.2);
   DecimatedMesh coarse = cluster_decimate(scan.vertices, normals, scan.faces, kCoarseVertices);

@@ -14,12 +14,15 @@ namespace vitruvian {
 /// A scan in its file's frame and units (relative to scan.origin), with what does not depend on how it is
 /// aligned.
 struct PreparedScan {
-  Scan scan;
+  std::shared_ptr<const Scan> owner;
+  const Scan& scan;
   Points3f normals;     ///< unit, outward
   ViewSurface surface;  ///< coarse copy for pictures, without floor and strays, file units
   Vec3d centroid;       ///< scan frame: area-weighted mean of the coarse copy
   double extent;        ///< largest distance between two of its points, file units
 
+  /// @throws Error(no_geometry).
+  PreparedScan(std::shared_ptr<const Scan> scan, const Execution& execution);
   PreparedScan(Scan scan, const Execution& execution);
 };
 

@@ -33,6 +33,8 @@ struct Settings {
   DetailMode detail = DetailMode::off;
   int threads = 0;  ///< 0 = as many as the machine has
   std::uint32_t seed = 1;
+
+  bool operator==(const Settings&) const = default;
 };
 
 std::string to_string(Method value);
