@@ -4,6 +4,17 @@
 #include <numbers>
 
 namespace vitruvian {
+namespace {
+
+/// The unit quaternion whose scalar part is not negative.
+Eigen::Quaterniond short_quaternion(const Mat3d& rotation) {
+  Eigen::Quaterniond q(rotation);
+  q.normalize();
+  if (q.w() < 0) q.coeffs() *= -1;
+  return q;
+}
+
+}  // namespace
 
 BodyState BodyState::rest(const BodyModel& model) {
   BodyState state;
@@ -30,9 +41,7 @@ Points3d BodyState::axis_angle() const {
   Points3d pose(3, static_cast<Index>(rotation.size()));
   for (std::size_t j = 0; j < rotation.size(); ++j) {
     // Through a quaternion: accurate near zero and near a half turn, where the matrix's trace is not.
-    Eigen::Quaterniond q(rotation[j]);
-    q.normalize();
-    if (q.w() < 0) q.coeffs() *= -1;
+    const Eigen::Quaterniond q = short_quaternion(rotation[j]);
     const double sine = q.vec().norm();
     const double scale = sine > 1e-12 ? 2 * std::atan2(sine, q.w()) / sine : 2.0;
     pose.col(static_cast<Index>(j)) = scale * q.vec();
@@ -62,6 +71,32 @@ Skeleton pose_skeleton(const BodyModel& model, const BodyState& state) {
   return skeleton;
 }
 
+Eigen::Matrix<double, 9, 1> pose_feature(PoseFeature kind, const Mat3d& rotation) {
+  Eigen::Matrix<double, 9, 1> feature = Eigen::Matrix<double, 9, 1>::Zero();
+  if (kind == PoseFeature::quaternion) {
+    const Eigen::Quaterniond q = short_quaternion(rotation);
+    feature.head<4>() << q.vec(), q.w() - 1;
+  } else {
+    for (int k = 0; k < 9; ++k) feature[k] = rotation(k / 3, k % 3) - (k / 3 == k % 3 ? 1 : 0);
+  }
+  return feature;
+}
+
+Eigen::Matrix<double, 9, 3> pose_feature_by_turn(PoseFeature kind, const Mat3d& rotation) {
+  Eigen::Matrix<double, 9, 3> derivative = Eigen::Matrix<double, 9, 3>::Zero();
+  const Eigen::Quaterniond q = short_quaternion(rotation);
+  for (int c = 0; c < 3; ++c) {
+    const Vec3d axis = Vec3d::Unit(c);
+    if (kind == PoseFeature::quaternion) {
+      derivative.col(c).head<3>() = 0.5 * (q.w() * axis + axis.cross(Vec3d(q.vec())));
+      derivative(3, c) = -0.5 * q.vec()[c];
+    } else {
+      for (int k = 0; k < 9; ++k) derivative(k, c) = axis.cross(Vec3d(rotation.col(k % 3)))[k / 3];
+    }
+  }
+  return derivative;
+}
+
 template <typename Scalar>
 void shape_vertices(const BodyModel& model, const Eigen::VectorXd& betas, VertexMatrix<Scalar>& rest) {
   rest = model.v_template.cast<Scalar>();
@@ -80,11 +115,8 @@ template <typename Scalar>
 void add_correctives(const BodyModel& model, const BodyState& state, VertexMatrix<Scalar>& rest) {
   const int joints = model.joint_count();
   Eigen::Matrix<Scalar, 9, Eigen::Dynamic> feature(9, joints);
-  for (int j = 0; j < joints; ++j) {
-    for (int k = 0; k < 9; ++k) {
-      feature(k, j) = static_cast<Scalar>(state.rotation[j](k / 3, k % 3) - (k / 3 == k % 3 ? 1 : 0));
-    }
-  }
+  for (int j = 0; j < joints; ++j)
+    feature.col(j) = pose_feature(model.pose_feature, state.rotation[j]).template cast<Scalar>();
   for (int v = 0; v < model.vertex_count(); ++v) {
     for (int b = model.corrective_begin[v]; b < model.corrective_begin[v + 1]; ++b) {
       rest.col(v) += model.corrective[b].template cast<Scalar>() * feature.col(model.corrective_joint[b]);

@@ -42,6 +42,11 @@ void shape_vertices(const BodyModel& model, const Eigen::VectorXd& betas, Vertex
 template <typename Scalar>
 void add_correctives(const BodyModel& model, const BodyState& state, VertexMatrix<Scalar>& rest);
 
+/// What the pose correctives of a joint with this rotation are multiplied by.
+Eigen::Matrix<double, 9, 1> pose_feature(PoseFeature kind, const Mat3d& rotation);
+/// Its derivative by a small turn w of the joint, rotation <- exp(w) rotation.
+Eigen::Matrix<double, 9, 3> pose_feature_by_turn(PoseFeature kind, const Mat3d& rotation);
+
 /// Linear blend skinning of rest vertices (shape and correctives included). `posed` is resized to 3 x V.
 template <typename Scalar>
 void skin_vertices(const BodyModel& model, const Skeleton& skeleton, const VertexMatrix<Scalar>& rest,

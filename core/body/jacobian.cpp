@@ -1,6 +1,7 @@
 #include "body/jacobian.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <map>
 
 namespace vitruvian {
@@ -13,9 +14,25 @@ Eigen::Matrix<typename Derived::Scalar, 3, 3> cross_matrix(const Eigen::MatrixBa
   return m;
 }
 
+/// Blocks of a vertex in ascending order, all or the `most` largest.
+std::vector<int> strongest_blocks(const BodyModel& model, int vertex, int most) {
+  std::vector<int> blocks;
+  for (int b = model.corrective_begin[vertex]; b < model.corrective_begin[vertex + 1]; ++b)
+    blocks.push_back(b);
+  if (most > 0 && static_cast<int>(blocks.size()) > most) {
+    std::nth_element(blocks.begin(), blocks.begin() + most, blocks.end(), [&](int a, int b) {
+      const float size_a = model.corrective[a].squaredNorm(), size_b = model.corrective[b].squaredNorm();
+      return size_a != size_b ? size_a > size_b : a < b;
+    });
+    blocks.resize(most);
+    std::sort(blocks.begin(), blocks.end());
+  }
+  return blocks;
+}
+
 }  // namespace
 
-AncestorGroups::AncestorGroups(const BodyModel& model) {
+AncestorGroups::AncestorGroups(const BodyModel& model, int most_correctives, float least_weight) {
   const int joint_count = model.joint_count();
   ancestors.assign(joint_count, 0);
   for (int j = 0; j < joint_count; ++j) {
@@ -24,14 +41,14 @@ AncestorGroups::AncestorGroups(const BodyModel& model) {
   }
   std::map<std::uint64_t, int> known;
   group_of_vertex.resize(model.vertex_count());
+  block_begin.assign(1, 0);
   for (int v = 0; v < model.vertex_count(); ++v) {
     std::uint64_t mask = 0;
     for (Index k = 0; k < model.skin_joint.rows(); ++k) {
-      if (model.skin_weight(k, v) > 0) mask |= ancestors[model.skin_joint(k, v)];
+      if (model.skin_weight(k, v) > least_weight) mask |= ancestors[model.skin_joint(k, v)];
     }
-    for (int b = model.corrective_begin[v]; b < model.corrective_begin[v + 1]; ++b) {
-      mask |= std::uint64_t{1} << model.corrective_joint[b];
-    }
+    const std::vector<int> counted = strongest_blocks(model, v, most_correctives);
+    for (const int b : counted) mask |= std::uint64_t{1} << model.corrective_joint[b];
     const auto [entry, added] = known.try_emplace(mask, static_cast<int>(joints.size()));
     if (added) {
       joints.emplace_back();
@@ -40,6 +57,13 @@ AncestorGroups::AncestorGroups(const BodyModel& model) {
       }
     }
     group_of_vertex[v] = entry->second;
+    const std::vector<int>& members = joints[entry->second];
+    for (const int b : counted) {
+      block.push_back(b);
+      const auto place = std::lower_bound(members.begin(), members.end(), model.corrective_joint[b]);
+      block_slot.push_back(static_cast<int>(place - members.begin()));
+    }
+    block_begin.push_back(static_cast<int>(block.size()));
   }
 }
 
@@ -74,12 +98,7 @@ BodyJacobian<Scalar>::BodyJacobian(const BodyModel& model, const AncestorGroups&
     }
     offset_by_betas_[j] = (joint_by_betas_[j] - global * own).template cast<Scalar>();
     const Mat3d parent_global = p < 0 ? Mat3d::Identity() : skeleton.global[p];
-    Eigen::Matrix<double, 9, 3> by_local;
-    for (int c = 0; c < 3; ++c) {
-      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> turned =
-          cross_matrix(Vec3d(Vec3d::Unit(c))) * state.rotation[j];
-      by_local.col(c) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(turned.data());
-    }
+    const Eigen::Matrix<double, 9, 3> by_local = pose_feature_by_turn(model.pose_feature, state.rotation[j]);
     rotation_by_increment_[j] = (by_local * parent_global.transpose()).template cast<Scalar>();
   }
 }
@@ -90,7 +109,7 @@ void BodyJacobian<Scalar>::vertex(int v, Eigen::Ref<Compact> out) const {
   const Index per_vertex = model_.skin_joint.rows();
   Matrix3 blended = Matrix3::Zero();
   // Vertex as seen by each of its bones, times the weight.
-  Eigen::Matrix<Scalar, 3, 16> part;
+  Eigen::Matrix<Scalar, 3, kMostSkinWeights> part;
   Index used = 0;
   auto by_betas = out.middleCols(3 + 3 * static_cast<Index>(joints.size()), betas_);
   by_betas.setZero();
@@ -116,12 +135,11 @@ void BodyJacobian<Scalar>::vertex(int v, Eigen::Ref<Compact> out) const {
     }
     out.template middleCols<3>(3 + 3 * static_cast<Index>(n)) = -cross_matrix(arm);
   }
-  for (int b = model_.corrective_begin[v]; b < model_.corrective_begin[v + 1]; ++b) {
-    const int j = model_.corrective_joint[b];
-    std::size_t n = 0;
-    while (joints[n] != j) ++n;
-    out.template middleCols<3>(3 + 3 * static_cast<Index>(n)) +=
-        blended * (model_.corrective[b].template cast<Scalar>() * rotation_by_increment_[j]);
+  for (int i = groups_.block_begin[v]; i < groups_.block_begin[v + 1]; ++i) {
+    const int b = groups_.block[i];
+    out.template middleCols<3>(3 + 3 * static_cast<Index>(groups_.block_slot[i])) +=
+        blended *
+        (model_.corrective[b].template cast<Scalar>() * rotation_by_increment_[model_.corrective_joint[b]]);
   }
 }
 

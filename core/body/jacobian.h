@@ -9,11 +9,21 @@ namespace vitruvian {
 
 /// Which joints move which vertex: the ancestors of every joint that weighs on it or corrects it. Vertices
 /// with the same set form a group, so that rows of a Jacobian can be multiplied as one block.
+///
+/// Models whose every vertex is corrected by every joint (SMPL's are) would have one group of all joints;
+/// most of these blocks move their vertex by less than a millimetre. A fit does without the weakest of them
+/// in its derivatives, never in the body itself.
 struct AncestorGroups {
   std::vector<int> group_of_vertex;      ///< V
   std::vector<std::vector<int>> joints;  ///< ascending joint indices, a group
   std::vector<std::uint64_t> ancestors;  ///< J bit masks, the joint itself included
-  explicit AncestorGroups(const BodyModel& model);
+  /// Correctives that count: vertex v's are [block_begin[v], block_begin[v + 1]) of the next two.
+  std::vector<int> block_begin;
+  std::vector<int> block;       ///< index into BodyModel::corrective
+  std::vector<int> block_slot;  ///< place of its joint among the group's
+  /// @param most_correctives  the strongest blocks of a vertex that count; 0 = all (exact derivatives).
+  /// @param least_weight      skinning weights that count for the groups.
+  explicit AncestorGroups(const BodyModel& model, int most_correctives = 0, float least_weight = 0);
 };
 
 /// Derivatives of posed vertices and joints with respect to the state.
@@ -58,7 +68,7 @@ class BodyJacobian {
   Eigen::Matrix<Scalar, 3, Eigen::Dynamic> joints_;                        // posed
   std::vector<Eigen::MatrixXd> joint_by_betas_;                            // J of 3 x K
   std::vector<Eigen::Matrix<Scalar, 3, Eigen::Dynamic>> offset_by_betas_;  // J of 3 x K
-  std::vector<Eigen::Matrix<Scalar, 9, 3>> rotation_by_increment_;         // J: d vec(R_j) / d w_j
+  std::vector<Eigen::Matrix<Scalar, 9, 3>> rotation_by_increment_;         // J: d feature(R_j) / d w_j
   Points3d joints_double_;
 };
 

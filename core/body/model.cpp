@@ -135,6 +135,18 @@ std::string_view name_of(Gender gender) noexcept {
   return "neutral";
 }
 
+int BodyModel::joint_for_smpl(int smpl_joint) const {
+  if (smpl_joint < 22) return smpl_joint;
+  const std::string_view wanted[] = {kSmplJointNames[smpl_joint],
+                                     smpl_joint == 22 ? "left_middle1" : "right_middle1"};
+  for (const std::string_view name : wanted) {
+    const auto found = std::find(joint_names.begin(), joint_names.end(), name);
+    if (found != joint_names.end()) return static_cast<int>(found - joint_names.begin());
+  }
+  // Without hands of any kind, the wrist.
+  return std::min(smpl_joint - 2, joint_count() - 1);
+}
+
 BodyModel read_body_model(std::span<const std::byte> bytes, const std::string& file_name) {
   const ArrayFile file(bytes, "BODY", file_name);
   BodyModel model;

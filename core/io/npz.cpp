@@ -1,13 +1,12 @@
 #include "io/npz.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "base/error.h"
 #include "base/inflate.h"
 #include "io/binary.h"
+#include "io/pickle_text.h"
 
 namespace vitruvian {
 namespace {
@@ -16,9 +15,7 @@ constexpr std::size_t kEndRecord = 22, kDirectoryEntry = 46, kLocalHeader = 30;
 
 /// What an .npy header says.
 struct NpyHeader {
-  char kind = 0;  ///< f, i, u, b, U, S ...
-  std::size_t item_size = 0;
-  bool swap = false;
+  NumpyType type;
   bool fortran_order = false;
   std::vector<std::size_t> shape;
   std::size_t count = 1;
@@ -52,13 +49,7 @@ NpyHeader read_npy_header(std::span<const std::byte> bytes, const std::string& n
   if (type.size() < 4 || type[0] != '\'') {
     throw Error(ErrorCode::unsupported_format, name + ": records are not read; save plain numeric arrays");
   }
-  header.swap = type[1] == '>';
-  header.kind = type[2];
-  for (std::size_t k = 3; k < type.size() && type[k] >= '0' && type[k] <= '9' && header.item_size < 1'000'000;
-       ++k) {
-    header.item_size = 10 * header.item_size + static_cast<std::size_t>(type[k] - '0');
-  }
-  if (header.kind == 'U') header.item_size *= 4;
+  header.type = NumpyType::parse(type.substr(1));
   header.fortran_order = value_of(text, "fortran_order", name).substr(0, 4) == "True";
 
   std::string_view shape = value_of(text, "shape", name);
@@ -85,73 +76,10 @@ NpyHeader read_npy_header(std::span<const std::byte> bytes, const std::string& n
     shape.remove_prefix(std::min(shape.size(), std::max(comma + 1, shape.find_first_not_of(' ', comma + 1))));
   }
   header.data = bytes.subspan(prefix + header_size);
-  if (header.item_size != 0 && header.count > header.data.size() / header.item_size) {
+  if (header.type.item_size != 0 && header.count > header.data.size() / header.type.item_size) {
     bad(name, "is cut short: its shape does not fit its size");
   }
   return header;
-}
-
-double half_at(const std::byte* bytes, bool swap) {
-  const auto half = load<std::uint16_t>(bytes, swap);
-  const int exponent = half >> 10 & 31, fraction = half & 1023;
-  double magnitude = exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
-  if (exponent == 31)
-    magnitude = fraction ? std::numeric_limits<double>::quiet_NaN() : std::numeric_limits<double>::infinity();
-  return half & 0x8000 ? -magnitude : magnitude;
-}
-
-double number_at(const NpyHeader& header, std::size_t index, const std::string& name) {
-  const std::byte* at = header.data.data() + index * header.item_size;
-  const auto is = [&](char kind, std::size_t size) {
-    return header.kind == kind && header.item_size == size;
-  };
-  if (is('f', 4)) return load_number(Scalar::f32, at, header.swap);
-  if (is('f', 8)) return load_number(Scalar::f64, at, header.swap);
-  if (is('i', 1)) return load_number(Scalar::i8, at);
-  if (is('i', 2)) return load_number(Scalar::i16, at, header.swap);
-  if (is('i', 4)) return load_number(Scalar::i32, at, header.swap);
-  if (is('i', 8)) return load_number(Scalar::i64, at, header.swap);
-  if (is('u', 1) || is('b', 1)) return load_number(Scalar::u8, at);
-  if (is('u', 2)) return load_number(Scalar::u16, at, header.swap);
-  if (is('u', 4)) return load_number(Scalar::u32, at, header.swap);
-  if (is('u', 8)) return load_number(Scalar::u64, at, header.swap);
-  if (is('f', 2)) return half_at(at, header.swap);
-  throw Error(ErrorCode::unsupported_format, name + ": NumPy type " + header.kind +
-                                                 std::to_string(header.item_size) + " is not a plain number");
-}
-
-/// Fortran order to C order.
-std::vector<double> transposed(const std::vector<double>& values, const std::vector<std::size_t>& shape) {
-  std::vector<double> result(values.size());
-  std::vector<std::size_t> index(shape.size());
-  for (double& value : result) {
-    std::size_t position = 0;
-    for (std::size_t k = shape.size(); k-- > 0;) position = position * shape[k] + index[k];
-    value = values[position];
-    for (std::size_t k = shape.size(); k-- > 0;) {
-      if (++index[k] < shape[k]) break;
-      index[k] = 0;
-    }
-  }
-  return result;
-}
-
-void append_utf8(std::string& text, std::uint32_t code) {
-  if (code < 0x80) {
-    text += static_cast<char>(code);
-  } else if (code < 0x800) {
-    text += static_cast<char>(0xc0 | code >> 6);
-    text += static_cast<char>(0x80 | (code & 63));
-  } else if (code < 0x10000) {
-    text += static_cast<char>(0xe0 | code >> 12);
-    text += static_cast<char>(0x80 | (code >> 6 & 63));
-    text += static_cast<char>(0x80 | (code & 63));
-  } else if (code < 0x110000) {
-    text += static_cast<char>(0xf0 | code >> 18);
-    text += static_cast<char>(0x80 | (code >> 12 & 63));
-    text += static_cast<char>(0x80 | (code >> 6 & 63));
-    text += static_cast<char>(0x80 | (code & 63));
-  }
 }
 
 template <class T>
@@ -198,16 +126,7 @@ std::string to_npy(const NpzItem& item) {
 
 NumericArray read_npy(std::span<const std::byte> bytes, const std::string& file_name) {
   const NpyHeader header = read_npy_header(bytes, file_name);
-  NumericArray array;
-  array.shape = header.shape;
-  if (header.item_size == 0 || header.kind == 'O') {
-    throw Error(ErrorCode::unsupported_format,
-                file_name + ": holds Python objects; save plain numeric arrays");
-  }
-  array.values.resize(header.count);
-  for (std::size_t i = 0; i < header.count; ++i) array.values[i] = number_at(header, i, file_name);
-  if (header.fortran_order && header.shape.size() > 1) array.values = transposed(array.values, header.shape);
-  return array;
+  return decode_numpy(header.type, header.shape, header.fortran_order, header.data, file_name);
 }
 
 NpzFile::NpzFile(std::span<const std::byte> bytes, std::string file_name) : file_name_(std::move(file_name)) {
@@ -290,15 +209,26 @@ NumericArray NpzFile::array(std::string_view name) const {
   return read_npy(unpack(name), file_name_ + ": " + std::string(name));
 }
 
+std::vector<std::byte> NpzFile::bytes(std::string_view name) const { return unpack(name); }
+
+std::vector<std::byte> NpzFile::python_object(std::string_view name) const {
+  std::vector<std::byte> content = unpack(name);
+  const NpyHeader header = read_npy_header(content, file_name_ + ": " + std::string(name));
+  if (header.type.kind != 'O') return {};
+  content.erase(content.begin(), content.end() - static_cast<std::ptrdiff_t>(header.data.size()));
+  return content;
+}
+
 std::string NpzFile::text(std::string_view name) const {
   const std::vector<std::byte> content = unpack(name);
   const NpyHeader header = read_npy_header(content, file_name_ + ": " + std::string(name));
-  if ((header.kind != 'U' && header.kind != 'S') || header.count != 1)
+  if ((header.type.kind != 'U' && header.type.kind != 'S') || header.count != 1)
     fail(std::string(name) + ": is not a piece of text");
   std::string text;
-  if (header.kind == 'S') text.assign(reinterpret_cast<const char*>(header.data.data()), header.item_size);
-  for (std::size_t k = 0; header.kind == 'U' && k < header.item_size; k += 4) {
-    append_utf8(text, load<std::uint32_t>(header.data.data() + k, header.swap));
+  if (header.type.kind == 'S')
+    text.assign(reinterpret_cast<const char*>(header.data.data()), header.type.item_size);
+  for (std::size_t k = 0; header.type.kind == 'U' && k < header.type.item_size; k += 4) {
+    append_utf8(text, load<std::uint32_t>(header.data.data() + k, header.type.swap));
   }
   text.erase(text.find_last_not_of('\0') + 1);
   return text;

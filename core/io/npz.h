@@ -7,13 +7,9 @@
 #include <string_view>
 #include <vector>
 
-namespace vitruvian {
+#include "io/numpy_array.h"
 
-/// A numeric array as read from a file: values in C order, integers and booleans as numbers.
-struct NumericArray {
-  std::vector<std::size_t> shape;  ///< empty for a single number
-  std::vector<double> values;
-};
+namespace vitruvian {
 
 /// Reads a NumPy .npy file: f2 f4 f8, i1..i8, u1..u8 and b1, either byte order, C or Fortran order.
 /// @throws Error(bad_file) when damaged; Error(unsupported_format) for text, complex or Python objects.
@@ -33,6 +29,10 @@ class NpzFile {
   bool has(std::string_view name) const;
   /// @throws Error(bad_file, unsupported_format); also when there is none of that name.
   NumericArray array(std::string_view name) const;
+  /// The unpacked content of a member, whatever it is.
+  std::vector<std::byte> bytes(std::string_view name) const;
+  /// The pickle inside of an array of Python objects; empty for arrays of another kind.
+  std::vector<std::byte> python_object(std::string_view name) const;
   /// A single piece of text (numpy types U and S), as UTF-8, zeros at the end removed.
   std::string text(std::string_view name) const;
 

@@ -10,12 +10,13 @@ namespace vitruvian::testing {
 
 /// A small model of any size with random geometry, weights and correctives: nothing in the maths may depend
 /// on the default body's numbers.
-inline BodyModel random_model(std::uint32_t seed, int joints, int vertices, int betas,
-                              int weights_per_vertex) {
+inline BodyModel random_model(std::uint32_t seed, int joints, int vertices, int betas, int weights_per_vertex,
+                              PoseFeature pose_feature = PoseFeature::rotation) {
   Random random(seed);
   BodyModel model;
   model.name = "random";
   model.family = "vitruvian";
+  model.pose_feature = pose_feature;
   const auto fill = [&](auto& matrix, double scale) {
     for (Index i = 0; i < matrix.size(); ++i) {
       matrix.data()[i] =
