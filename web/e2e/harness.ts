@@ -1,8 +1,9 @@
 // What every end-to-end test needs: the built page on a server of its own, in Debian's Chromium, watched.
-import { existsSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import type { AddressInfo } from "node:net";
 import { resolve } from "node:path";
 import { type Browser, type BrowserContext, chromium, type Page } from "playwright-core";
+import { test as base, expect } from "vitest";
 // @ts-expect-error: the development server is plain JavaScript
 import { createStaticServer } from "../../scripts/serve.mjs";
 
@@ -64,6 +65,66 @@ export function watch(context: BrowserContext): Watch {
   context.on("weberror", (error) => seen.complaints.push(String(error.error())));
   context.on("request", (request) => seen.requests.push(request.url()));
   return seen;
+}
+
+/** A test on a fresh page of a served site. Afterwards the page must not have complained nor asked another origin. */
+export const test = base.extend<{
+  $file: { browser: Browser; site: Site };
+  $test: { context: BrowserContext; seen: Watch; page: Page };
+}>({
+  browser: [
+    // biome-ignore lint/correctness/noEmptyPattern: vitest reads the names of what a fixture needs
+    async ({}, use) => {
+      const browser = await launch();
+      await use(browser);
+      await browser.close();
+    },
+    { scope: "file" },
+  ],
+  site: [
+    // biome-ignore lint/correctness/noEmptyPattern: as above
+    async ({}, use) => {
+      const site = await serve();
+      await use(site);
+      await site.close();
+    },
+    { scope: "file" },
+  ],
+  context: async ({ browser }, use) => {
+    const context = await browser.newContext({ viewport: { width: 1280, height: 720 } });
+    await use(context);
+    await context.close();
+  },
+  seen: async ({ context }, use) => use(watch(context)),
+  page: async ({ context, seen, site }, use) => {
+    const page = await context.newPage();
+    await page.goto(site.url);
+    await page.getByRole("heading", { name: "Vitruvian" }).waitFor();
+    await use(page);
+    expect(seen.complaints).toEqual([]);
+    expect(seen.requests.filter((url) => !url.startsWith(site.url) && !url.startsWith("blob:"))).toEqual([]);
+  },
+});
+
+/** A registration, on a machine that does other things too. */
+export const PATIENCE_MS = 120_000;
+
+export async function openSample(page: Page): Promise<void> {
+  await page.getByRole("button", { name: "Sample scan" }).click();
+  await page.getByText("Vertices", { exact: true }).waitFor({ timeout: PATIENCE_MS });
+}
+
+/** Waits for the result. @returns its verdict as shown */
+export async function verdict(page: Page): Promise<string> {
+  await page.locator(".verdict").waitFor({ timeout: PATIENCE_MS });
+  return page.locator(".verdict strong").innerText();
+}
+
+/** What the button downloads. */
+export async function downloaded(page: Page, button: string): Promise<Buffer> {
+  const arriving = page.waitForEvent("download");
+  await page.getByRole("button", { name: button }).click();
+  return readFileSync(await (await arriving).path());
 }
 
 /** Puts a file into the page as the file picker does. */

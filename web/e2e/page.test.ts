@@ -1,43 +1,12 @@
 import { readFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
-import type { Browser, BrowserContext, Page } from "playwright-core";
-import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it } from "vitest";
-import { boxObj, drop, launch, pick, root, type Site, serve, type Watch, watch } from "./harness";
+import { describe, expect } from "vitest";
+import { boxObj, drop, pick, root, test } from "./harness";
 
 const FIRST_PAINT_BYTES = 250_000;
 
-let browser: Browser;
-let site: Site;
-let context: BrowserContext;
-let page: Page;
-let seen: Watch;
-
-beforeAll(async () => {
-  browser = await launch();
-  site = await serve();
-});
-
-afterAll(async () => {
-  await browser?.close();
-  await site?.close();
-});
-
-beforeEach(async () => {
-  context = await browser.newContext({ viewport: { width: 1280, height: 720 } });
-  seen = watch(context);
-  page = await context.newPage();
-  await page.goto(site.url);
-  await page.getByRole("heading", { name: "Vitruvian" }).waitFor();
-});
-
-afterEach(async () => {
-  expect(seen.complaints).toEqual([]);
-  expect(seen.requests.filter((url) => !url.startsWith(site.url) && !url.startsWith("blob:"))).toEqual([]);
-  await context.close();
-});
-
 describe("the page", () => {
-  it("paints first from little, and loads neither viewer nor core", async () => {
+  test("paints first from little, and loads neither viewer nor core", async ({ page, seen }) => {
     await page.waitForTimeout(500);
     const loaded = seen.requests.map((url) => new URL(url).pathname.slice(1) || "index.html");
     expect(loaded.some((name) => /viewer|wasm|onnx|ort/.test(name))).toBe(false);
@@ -46,7 +15,7 @@ describe("the page", () => {
     expect(scripts.reduce((sum, name) => sum + size(name), 0)).toBeLessThan(FIRST_PAINT_BYTES);
   });
 
-  it("is isolated, forbids evaluation, and asks nobody else", async () => {
+  test("is isolated, forbids evaluation, and asks nobody else", async ({ page, seen }) => {
     expect(await page.evaluate(() => crossOriginIsolated)).toBe(true);
     const policy = await page.locator('meta[http-equiv="Content-Security-Policy"]').getAttribute("content");
     expect(policy).toContain("default-src 'self'");
@@ -60,7 +29,7 @@ describe("the page", () => {
     seen.complaints.length = 0;
   });
 
-  it("goes through the stages by keyboard and names them", async () => {
+  test("goes through the stages by keyboard and names them", async ({ page }) => {
     await page.keyboard.press("3");
     expect(await page.getByRole("button", { name: "Keypoints" }).getAttribute("aria-current")).toBe("step");
     await page.keyboard.press("?");
@@ -69,7 +38,7 @@ describe("the page", () => {
     expect(await page.getByRole("dialog").count()).toBe(0);
   });
 
-  it("says who made it, under what licence, and what it is not", async () => {
+  test("says who made it, under what licence, and what it is not", async ({ page, site, context }) => {
     await page.getByRole("button", { name: "About" }).click();
     const about = page.getByRole("dialog", { name: "About Vitruvian" });
     expect(await about.innerText()).toMatch(/Not a medical device/);
@@ -79,7 +48,7 @@ describe("the page", () => {
     }
   });
 
-  it("changes its theme and remembers it", async () => {
+  test("changes its theme and remembers it", async ({ page }) => {
     const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     await page.getByLabel("Theme").selectOption("light");
     const light = await background();
@@ -90,7 +59,7 @@ describe("the page", () => {
     expect(await background()).not.toBe(light);
   });
 
-  it("fits a phone", async () => {
+  test("fits a phone", async ({ page }) => {
     await page.setViewportSize({ width: 390, height: 800 });
     const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
     expect(overflow).toBeLessThanOrEqual(0);
@@ -98,14 +67,14 @@ describe("the page", () => {
 });
 
 describe("a scan", () => {
-  it("is opened by dropping, and described", async () => {
+  test("is opened by dropping, and described", async ({ page }) => {
     await drop(page, "Ærø box.obj", boxObj(1750));
     await page.getByText("Ærø box.obj").waitFor();
     expect(await page.locator("aside").innerText()).toMatch(/Vertices\s+36\s+Faces\s+64/);
     await page.getByRole("toolbar", { name: "View" }).waitFor();
   });
 
-  it("is refused with words and the place when it is broken, and the next one opens", async () => {
+  test("is refused with words and the place when it is broken, and the next one opens", async ({ page }) => {
     await pick(page, {
       name: "broken.ply",
       buffer: Buffer.from("ply\nformat ascii 1.0\nelement vertex 4\n"),

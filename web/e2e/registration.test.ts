@@ -3,64 +3,15 @@ import { existsSync, mkdtempSync, readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { unzipSync } from "fflate";
-import type { Browser, BrowserContext, Page } from "playwright-core";
-import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it } from "vitest";
+import { describe, expect } from "vitest";
 import type { Registration } from "../src/core/types";
-import { launch, pick, root, type Site, serve, type Watch, watch } from "./harness";
+import { downloaded, openSample, PATIENCE_MS, pick, root, serve, test, verdict } from "./harness";
 
 const SAMPLE = `${root}/models/generated/sample.ply`;
 const CLI = `${root}/build/native/vitruvian`;
 const JOINT_TOLERANCE_MM = 0.5;
 const MEAN_TOLERANCE_MM = 0.05;
 const CANCEL_MS = 200;
-/** A registration, on a machine that does other things too. */
-const PATIENCE_MS = 120_000;
-
-let browser: Browser;
-let site: Site;
-let context: BrowserContext;
-let page: Page;
-let seen: Watch;
-
-beforeAll(async () => {
-  browser = await launch();
-  site = await serve();
-});
-
-afterAll(async () => {
-  await browser?.close();
-  await site?.close();
-});
-
-beforeEach(async () => {
-  context = await browser.newContext({ viewport: { width: 1280, height: 720 } });
-  seen = watch(context);
-  page = await context.newPage();
-  await page.goto(site.url);
-  await page.getByRole("heading", { name: "Vitruvian" }).waitFor();
-});
-
-afterEach(async () => {
-  expect(seen.complaints).toEqual([]);
-  expect(seen.requests.filter((url) => !url.startsWith(site.url) && !url.startsWith("blob:"))).toEqual([]);
-  await context.close();
-});
-
-async function openSample(): Promise<void> {
-  await page.getByRole("button", { name: "Sample scan" }).click();
-  await page.getByText("Vertices", { exact: true }).waitFor({ timeout: PATIENCE_MS });
-}
-
-async function verdict(): Promise<string> {
-  await page.locator(".verdict").waitFor({ timeout: PATIENCE_MS });
-  return page.locator(".verdict strong").innerText();
-}
-
-async function downloaded(button: string): Promise<Buffer> {
-  const arriving = page.waitForEvent("download");
-  await page.getByRole("button", { name: button }).click();
-  return readFileSync(await (await arriving).path());
-}
 
 /** The command line's own result on the sample scan. */
 function nativeFolder(): string {
@@ -70,13 +21,13 @@ function nativeFolder(): string {
 }
 
 describe("registering the sample scan", () => {
-  it("ends with verdict ok, and gives what the command line gives", async () => {
-    await openSample();
+  test("ends with verdict ok, and gives what the command line gives", async ({ page }) => {
+    await openSample(page);
     await page.keyboard.press("r");
-    expect(await verdict()).toBe("OK");
+    expect(await verdict(page)).toBe("OK");
     expect(await page.locator("table.errors tbody tr").count()).toBe(25);
 
-    const zip = unzipSync(await downloaded("All as ZIP"));
+    const zip = unzipSync(await downloaded(page, "All as ZIP"));
     expect(Object.keys(zip).sort()).toEqual(
       ["errors.csv", "registered.ply", "registration.json"].map((n) => `sample/${n}`),
     );
@@ -103,10 +54,10 @@ describe("registering the sample scan", () => {
     expect(header(zip["sample/registered.ply"]!)).toBe(header(readFileSync(join(folder, "registered.ply"))));
   });
 
-  it("shows every stage, and the view's options", async () => {
-    await openSample();
+  test("shows every stage, and the view's options", async ({ page }) => {
+    await openSample(page);
     await page.getByRole("button", { name: "Register R" }).click();
-    await verdict();
+    await verdict(page);
     await page.keyboard.press("3");
     expect(await page.locator(".views canvas").count()).toBe(8);
     await page.keyboard.press("2");
@@ -116,8 +67,8 @@ describe("registering the sample scan", () => {
     expect(await page.locator(".legend").count()).toBe(0);
   });
 
-  it("takes a unit by hand", async () => {
-    await openSample();
+  test("takes a unit by hand", async ({ page }) => {
+    await openSample(page);
     await page.keyboard.press("2");
     await page.getByRole("radio", { name: "cm", exact: true }).check({ force: true });
     await page.keyboard.press("r");
@@ -127,8 +78,8 @@ describe("registering the sample scan", () => {
     await page.getByText("is the unit right?").waitFor();
   });
 
-  it("stops at once when cancelled, and runs again", async () => {
-    await openSample();
+  test("stops at once when cancelled, and runs again", async ({ page }) => {
+    await openSample(page);
     await page.keyboard.press("r");
     await page
       .getByText(/Fitting|Drawing|Finding keypoints/)
@@ -143,17 +94,17 @@ describe("registering the sample scan", () => {
     expect(took).toBeLessThan(CANCEL_MS);
     await page.getByText("Stopped.").waitFor();
     await page.keyboard.press("r");
-    expect(await verdict()).toBe("OK");
+    expect(await verdict(page)).toBe("OK");
   });
 });
 
 describe("without network or threads", () => {
-  it("registers after a reload with the server gone", async () => {
+  test("registers after a reload with the server gone", async ({ page, seen }) => {
     const passing = await serve();
     await page.goto(passing.url);
-    await openSample();
+    await openSample(page);
     await page.keyboard.press("r");
-    expect(await verdict()).toBe("OK");
+    expect(await verdict(page)).toBe("OK");
     await passing.close();
     await page.reload();
     await page.getByRole("heading", { name: "Vitruvian" }).waitFor();
@@ -161,17 +112,17 @@ describe("without network or threads", () => {
     await pick(page, SAMPLE);
     await page.getByText("Vertices", { exact: true }).waitFor({ timeout: PATIENCE_MS });
     await page.keyboard.press("r");
-    expect(await verdict()).toBe("OK");
+    expect(await verdict(page)).toBe("OK");
     seen.requests.length = 0;
     seen.complaints.length = 0;
   });
 
-  it("registers on one thread", async () => {
+  test("registers on one thread", async ({ page, seen, site }) => {
     await page.goto(`${site.url}?threads=1`);
-    await openSample();
+    await openSample(page);
     await page.getByText("does not allow threads").waitFor();
     await page.keyboard.press("r");
-    expect(await verdict()).toBe("OK");
+    expect(await verdict(page)).toBe("OK");
     expect(seen.requests.some((url) => url.includes("/wasm/threads/"))).toBe(false);
   });
 });
