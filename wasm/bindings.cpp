@@ -133,10 +133,16 @@ EMSCRIPTEN_KEEPALIVE int vitruvian_load_model(int part, std::byte* data, std::si
       0);
 }
 
-EMSCRIPTEN_KEEPALIVE int vitruvian_begin(const char* settings) {
+/// @return 1 + the number of stages that still hold; 0: failed.
+EMSCRIPTEN_KEEPALIVE int vitruvian_configure(const char* settings) {
+  return guarded([&] { return 1 + open_session().configure(settings); }, 0);
+}
+
+/// @param until  a PipelineStage.
+EMSCRIPTEN_KEEPALIVE int vitruvian_begin(int until, int again) {
   return guarded(
       [&] {
-        open_session().begin(settings);
+        open_session().begin(until, again != 0);
         return 1;
       },
       0);
@@ -160,8 +166,8 @@ EMSCRIPTEN_KEEPALIVE int vitruvian_resume() {
       0);
 }
 
-EMSCRIPTEN_KEEPALIVE const char* vitruvian_result_report() {
-  return guarded([&] { return kept(open_session().result_report()); }, kNoText);
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_findings_report() {
+  return guarded([&] { return kept(open_session().findings_report()); }, kNoText);
 }
 
 EMSCRIPTEN_KEEPALIVE const char* vitruvian_files_report(const char* mesh_format) {

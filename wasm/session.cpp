@@ -26,11 +26,8 @@ std::string mesh_text(const Registration& registration, const std::string& forma
   throw Error(ErrorCode::usage, "unknown mesh format \"" + format + "\"");
 }
 
-double extent_along_up(const Points3f& points, const Mat4d& body_from_scan) {
-  if (points.cols() == 0) return 0;
-  const Eigen::VectorXf along = body_from_scan.block<1, 3>(1, 0).cast<float>() * points;
-  return along.maxCoeff() - along.minCoeff();
-}
+constexpr PipelineStage kStages[] = {PipelineStage::align, PipelineStage::keypoints, PipelineStage::pose,
+                                     PipelineStage::fit};
 
 }  // namespace
 
@@ -81,7 +78,7 @@ void Session::open(Buffer file, std::string name) {
     const Points3f normals = Points3f::Zero(3, scan.vertices.cols());
     shown_ = cluster_decimate(scan.vertices, normals, scan.faces, kShownVertices);
     shown_.normals = vertex_normals(shown_.vertices, shown_.faces);
-    scan_ = std::move(scan);
+    scan_ = std::make_shared<const Scan>(std::move(scan));
   });
 }
 
@@ -90,16 +87,41 @@ std::string Session::scan_report() const {
   return text_of(describe_scan(*scan_, shown_));
 }
 
-void Session::begin(const std::string& settings) {
+bool Session::holds(PipelineStage stage) const {
+  return pipeline_ && pipeline_->reached(stage) && (stage != PipelineStage::fit || registration_);
+}
+
+int Session::configure(const std::string& settings) {
   task_.require_idle();
-  if (!scan_) throw Error(ErrorCode::usage, "open a scan first");
   Settings chosen = parse_settings(settings);
   chosen.threads = task_.execution().threads();
-  registration_.reset();
-  pipeline_ = std::make_unique<RegistrationPipeline>(models_, chosen, task_.execution());
-  pipeline_->set_read_time(read_ms_);
+  if (pipeline_) pipeline_->configure(chosen);
+  settings_ = chosen;
+  if (!holds(PipelineStage::fit)) registration_.reset();
+  int count = 0;
+  while (count < kPipelineStageCount && holds(kStages[count])) ++count;
+  return count;
+}
+
+void Session::begin(int until, bool again) {
+  task_.require_idle();
+  if (!scan_) throw Error(ErrorCode::usage, "open a scan first");
+  if (until < 0 || until >= kPipelineStageCount) throw Error(ErrorCode::internal, "unknown stage");
+  until_ = kStages[until];
+  if (!pipeline_) {
+    pipeline_ = std::make_unique<RegistrationPipeline>(models_, settings_, task_.execution());
+    pipeline_->set_read_time(read_ms_);
+  }
+  // What a cancelled run left behind of a stage is worked again.
+  for (const PipelineStage stage : kStages) {
+    if (holds(stage) && !(again && stage == until_)) continue;
+    pipeline_->forget(stage);
+    registration_.reset();
+    break;
+  }
+  request_.reset();
   task_.start([this] {
-    pipeline_->set_scan(*scan_);
+    if (!pipeline_->has_scan()) pipeline_->set_scan(scan_);
     advance();
   });
 }
@@ -113,12 +135,13 @@ void Session::resume() {
 }
 
 void Session::advance() {
-  request_ = pipeline_->next_request();
+  request_ = pipeline_->next_request(until_);
   reply_ = {};
   if (request_) {
     reply_.outputs.resize(request_->inputs.size());
     return;
   }
+  if (until_ != PipelineStage::fit || registration_) return;
   registration_ = pipeline_->finish();
   keep_result();
 }
@@ -128,7 +151,6 @@ void Session::keep_result() {
   body_vertices_ = ((body_from_scan.topLeftCorner<3, 3>() * registration_->registered_vertices).colwise() +
                     body_from_scan.topRightCorner<3, 1>())
                        .cast<float>();
-  height_m_ = extent_along_up(scan_->vertices, body_from_scan);
 }
 
 std::string Session::request_report() const {
@@ -144,20 +166,35 @@ float* Session::reply_buffer(std::size_t input, std::size_t output, std::size_t 
   return outputs[output].data();
 }
 
-std::string Session::result_report() const {
-  if (!registration_) throw Error(ErrorCode::internal, "nothing has been registered");
-  nlohmann::json report = {
-      {"registration",
-       nlohmann::json::parse(registration_json(*registration_, VITRUVIAN_VERSION, JsonStyle::compact))},
+nlohmann::json Session::describe_pose() {
+  const BodyState& state = pipeline_->initial_pose();
+  posed_vertices_ = posed_vertices<float>(models_.body, state);
+  const Faces& faces = models_.body.faces;
+  return {{"joints", describe_joints(models_.body, state)},
+          {"body", array_reference(posed_vertices_.data(), posed_vertices_.size())},
+          {"faces", array_reference(faces.data(), faces.size())}};
+}
+
+nlohmann::json Session::describe_result() const {
+  const Registration& r = *registration_;
+  return {
+      {"registration", nlohmann::json::parse(registration_json(r, VITRUVIAN_VERSION, JsonStyle::compact))},
       {"body", array_reference(body_vertices_.data(), body_vertices_.size())},
-      {"faces",
-       array_reference(registration_->registered_faces.data(), registration_->registered_faces.size())},
+      {"faces", array_reference(r.registered_faces.data(), r.registered_faces.size())},
       {"errors_mm",
-       array_reference(registration_->vertex_error_mm.data(), registration_->vertex_error_mm.size())},
-      {"height_m", height_m_},
-      {"views", nlohmann::json::array()},
-  };
-  if (const LandmarkStage* stage = pipeline_->landmark_stage()) report["views"] = describe_views(*stage);
+       array_reference(r.vertex_error_mm.data(), static_cast<std::ptrdiff_t>(r.vertex_error_mm.size()))}};
+}
+
+std::string Session::findings_report() {
+  nlohmann::json report = {
+      {"align", nullptr}, {"keypoints", nullptr}, {"pose", nullptr}, {"result", nullptr}};
+  if (holds(PipelineStage::align)) report["align"] = describe_alignment(pipeline_->align_finding());
+  if (holds(PipelineStage::keypoints)) {
+    report["keypoints"] = {{"views", describe_views(*pipeline_->landmark_stage())},
+                           {"joints", describe_keypoints(pipeline_->keypoints())}};
+  }
+  if (holds(PipelineStage::pose)) report["pose"] = describe_pose();
+  if (holds(PipelineStage::fit)) report["result"] = describe_result();
   return text_of(report);
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -53,38 +54,47 @@ class Session {
   /// that was opened.
   std::string scan_report() const;
 
-  /// Starts to register the opened scan. The task ends at the first network request, or with the result.
-  /// @param settings  JSON with the names and values of the command line; what is missing keeps its default.
-  /// @throws Error(usage).
-  void begin(const std::string& settings);
-  /// `{"network", "inputs": [array...]}`, or null when the registration is done.
+  /// Takes settings over. @param settings  JSON with the names and values of the command line; what is
+  /// missing keeps its default.
+  /// @return how many of the pipeline's stages still hold, 0..4.  @throws Error(usage, not_available).
+  int configure(const std::string& settings);
+  /// Starts to work the opened scan up to a stage: only what is not there yet, or that stage and all after it
+  /// anew. The task ends at the first network request, or when the stage is reached.
+  /// @param until  a PipelineStage.  @throws Error(usage).
+  void begin(int until, bool again);
+  /// `{"network", "inputs": [array...]}`, or null when the stage is reached.
   std::string request_report() const;
   /// Memory for `size` floats that answer output `output` of input `input`; outputs in their order.
   float* reply_buffer(std::size_t input, std::size_t output, std::size_t size);
-  /// Hands the reply to the pipeline and goes on until the next request or the result.
+  /// Hands the reply to the pipeline and goes on until the next request or the stage.
   void resume();
 
-  /// `{"registration", "body", "faces", "errors_mm", "height_m", "views"}` of the registration that was done.
-  std::string result_report() const;
+  /// `{"align", "keypoints", "pose", "result"}` of the stages that are reached, null for the others.
+  std::string findings_report();
   /// `{"files": [{"name", "data"}]}`: what the command line writes, with the mesh as "ply", "obj" or "glb".
   std::string files_report(const std::string& mesh_format);
 
  private:
+  bool holds(PipelineStage stage) const;
   void advance();
   void keep_result();
+  nlohmann::json describe_pose();
+  nlohmann::json describe_result() const;
 
   Task task_;
   Models models_;
-  std::optional<Scan> scan_;
+  std::shared_ptr<const Scan> scan_;
   double read_ms_ = 0;
   DecimatedMesh shown_;  ///< for the view, relative to the scan's origin
 
+  Settings settings_;
   std::unique_ptr<RegistrationPipeline> pipeline_;
+  PipelineStage until_ = PipelineStage::fit;
   std::optional<NetworkRequest> request_;
   NetworkReply reply_;
   std::optional<Registration> registration_;
-  Points3f body_vertices_;  ///< registered, body frame
-  double height_m_ = 0;     ///< extent of the scan along the body's up
+  Points3f body_vertices_;   ///< registered, body frame
+  Points3f posed_vertices_;  ///< before the fit, body frame
   std::vector<std::string> files_;
 };
 

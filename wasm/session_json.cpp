@@ -64,6 +64,50 @@ nlohmann::json describe_views(const LandmarkStage& stage) {
   return views;
 }
 
+nlohmann::json describe_alignment(const RegistrationPipeline::AlignFinding& finding) {
+  const Alignment& alignment = finding.alignment;
+  nlohmann::json rows = nlohmann::json::array();
+  for (int row = 0; row < 4; ++row) {
+    const Eigen::RowVector4d r = alignment.body_from_scan.row(row);
+    rows.push_back({r[0], r[1], r[2], r[3]});
+  }
+  return {{"unit", to_string(alignment.unit)},
+          {"metres_per_unit", alignment.metres_per_unit},
+          {"up", alignment.up},
+          {"front", alignment.front},
+          {"front_is_known", finding.front_is_known},
+          {"method", alignment.method},
+          {"body_from_scan", rows},
+          {"height_m", finding.height_m},
+          {"note", finding.unit_note}};
+}
+
+nlohmann::json describe_keypoints(const std::vector<Keypoint>& keypoints) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Keypoint& k : keypoints) {
+    nlohmann::json position;
+    if (k.position_m) position = {k.position_m->x(), k.position_m->y(), k.position_m->z()};
+    list.push_back({{"joint", k.joint},
+                    {"position_m", position},
+                    {"confidence", k.confidence},
+                    {"source", to_string(k.source)}});
+  }
+  return list;
+}
+
+nlohmann::json describe_joints(const BodyModel& body, const BodyState& state) {
+  const Skeleton skeleton = pose_skeleton(body, state);
+  const Points3d turns = state.axis_angle();
+  nlohmann::json list = nlohmann::json::array();
+  for (int j = 0; j < body.joint_count(); ++j) {
+    const Vec3d at = skeleton.joints.col(j);
+    list.push_back({{"name", body.joint_names[j]},
+                    {"body_m", {at.x(), at.y(), at.z()}},
+                    {"turn_rad", turns.col(j).norm()}});
+  }
+  return list;
+}
+
 Settings parse_settings(const std::string& text) {
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object()) throw Error(ErrorCode::usage, "settings: an object is expected");

@@ -1,5 +1,5 @@
 // Typed messages between the page and the worker that holds the core.
-import type { ErrorCode, OutputFile, ResultData, ScanData, Settings } from "./types";
+import type { CoreStage, ErrorCode, Findings, OutputFile, ScanData, Settings } from "./types";
 
 export interface CoreInfo {
   version: string;
@@ -11,8 +11,10 @@ export interface Calls {
   /** Loads the core; `threads` = 1 loads the build without threads. */
   start: { args: { base: string; threads: number }; result: CoreInfo };
   open: { args: { file: Blob; name: string }; result: ScanData };
-  /** Registers the opened scan. */
-  run: { args: { settings: Settings }; result: ResultData };
+  /** Takes settings over; answers how many of the core's stages still hold. */
+  configure: { args: { settings: Settings }; result: number };
+  /** Works the opened scan up to a stage: what is not there yet, or with `again` that stage and all after it anew. */
+  run: { args: { until: CoreStage; again: boolean }; result: Findings };
   /** Ends the `run` under way, which then fails with code "cancelled". */
   cancel: { args: Record<string, never>; result: null };
   /** Files of the last result as the command line writes them. */

@@ -12,6 +12,8 @@ export type Gender = "neutral" | "female" | "male";
 export interface Settings {
   method: "ours" | "paper" | "paper-cpu";
   gender: Gender;
+  /** pictures that the keypoints are found in */
+  views: 2 | 8;
   unit: Unit | "auto";
   up: Axis | "auto";
   front: Axis | "auto";
@@ -22,6 +24,7 @@ export interface Settings {
 export const defaultSettings: Settings = {
   method: "ours",
   gender: "neutral",
+  views: 8,
   unit: "auto",
   up: "auto",
   front: "auto",
@@ -152,16 +155,52 @@ export interface ViewData {
   landmarks: { x: number; y: number; confidence: number }[];
 }
 
+/** How the scan lies. */
+export interface AlignData {
+  unit: Unit;
+  metres_per_unit: number;
+  /** scan axes */
+  up: Axis;
+  front: Axis;
+  /** false: nothing tells front from back */
+  front_is_known: boolean;
+  method: string;
+  body_from_scan: Matrix;
+  /** extent along up, without floor and strays */
+  height_m: number;
+  /** plain words when another unit is possible too, else empty */
+  note: string;
+}
+
+export interface KeypointsData {
+  views: ViewData[];
+  /** the 22 joints, body frame */
+  joints: Keypoint[];
+}
+
+/** The body that the fit starts from. */
+export interface PoseData {
+  /** body frame; angle against the parent */
+  joints: { name: string; body_m: Vec3; turn_rad: number }[];
+  /** body frame, metres */
+  body: Mesh;
+}
+
+/** The registered body. */
 export interface ResultData {
   registration: Registration;
   /** registered vertices, body frame, metres; empty when failed */
   body: Mesh;
   /** a vertex of `body`, to the scan's surface; empty when failed */
   vertexErrorMm: Float32Array;
-  /** extent of the scan along the body's up, metres */
-  height_m: number;
-  /** the pictures that the keypoints were found in */
-  views: ViewData[];
+}
+
+/** What each of the core's stages found; null for those that are not reached. */
+export interface Findings {
+  align: AlignData | null;
+  keypoints: KeypointsData | null;
+  pose: PoseData | null;
+  register: ResultData | null;
 }
 
 export interface OutputFile {
@@ -169,5 +208,10 @@ export interface OutputFile {
   data: Uint8Array;
 }
 
+/** Stages of the core, in its order (PipelineStage in core/pipeline/stage.h). */
+export const kCoreStages = ["align", "keypoints", "pose", "register"] as const;
+export type CoreStage = (typeof kCoreStages)[number];
+
+/** Stages of the page. */
 export const kStages = ["scan", "align", "keypoints", "pose", "register", "results"] as const;
 export type Stage = (typeof kStages)[number];

@@ -1,7 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { kStages } from "../core/types";
-import { cancel, openFile, register } from "./actions";
+import { kCoreStages, kStages } from "../core/types";
+import { cancel, openFile, register, run } from "./actions";
 import { About, Help } from "./Dialogs";
 import { Header } from "./Header";
 import { Inspector } from "./Inspector";
@@ -26,7 +26,11 @@ export function App() {
       if (stage) state.stage.value = stage;
       else if (event.key === "o") pick();
       else if (event.key === "r") void register();
-      else if (event.key === "?") state.helpOpen.value = true;
+      else if (event.key === "s") {
+        const core = kCoreStages.find((name) => name === state.stage.value);
+        if (!core) return;
+        void run(core);
+      } else if (event.key === "?") state.helpOpen.value = true;
       else return;
       event.preventDefault();
     };

@@ -73,7 +73,8 @@ export function About() {
 const KEYS: [string, string][] = [
   ["1 – 6", "go to a stage"],
   ["O", "open a scan"],
-  ["R", "register"],
+  ["S", "run the stage shown"],
+  ["R", "register: run all stages that are left"],
   ["Esc", "cancel"],
   ["Arrow keys", "turn the view (when it has the focus)"],
   ["+ −", "zoom"],

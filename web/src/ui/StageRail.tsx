@@ -14,9 +14,10 @@ const SAID: Record<Done, string> = {
   waiting: "not done",
   working: "working",
   done: "done",
+  stale: "out of date",
   failed: "failed",
 };
-const MARK: Record<Done, string> = { waiting: "", working: "…", done: "✓", failed: "!" };
+const MARK: Record<Done, string> = { waiting: "", working: "…", done: "✓", stale: "↻", failed: "!" };
 
 /** The stages in their order, each with its state. */
 export function StageRail() {

@@ -40,23 +40,26 @@ export function ViewPane() {
 
   useSignalEffect(() => viewer.value?.setScan(state.scan.value));
   useSignalEffect(() => {
-    const matrix = state.result.value?.registration.alignment?.body_from_scan ?? null;
+    const matrix = state.found.value.align?.body_from_scan ?? null;
     if (!viewer.value || !state.scan.value) return;
     viewer.value.setBodyFromScan(matrix);
     viewer.value.look("front");
   });
   useSignalEffect(() => {
-    const result = state.result.value;
-    viewer.value?.setBody(result?.body ?? null, result?.vertexErrorMm ?? null);
+    const body = state.shownBody.value;
+    viewer.value?.setBody(body?.mesh ?? null, body?.errorsMm ?? null);
   });
   useSignalEffect(() => {
-    const registration = state.stage.value === "keypoints" ? state.result.value?.registration : undefined;
-    viewer.value?.setKeypoints(registration?.keypoints ?? []);
+    const keypoints = state.stage.value === "keypoints" ? state.found.value.keypoints : null;
+    viewer.value?.setKeypoints(keypoints?.joints ?? []);
   });
   useSignalEffect(() => {
-    const registration = state.stage.value === "pose" ? state.result.value?.registration : undefined;
-    viewer.value?.setSkeleton(registration?.joints.map(({ body_m }) => body_m) ?? []);
+    const pose = state.stage.value === "pose" ? state.found.value.pose : null;
+    viewer.value?.setSkeleton(pose?.joints.map(({ body_m }) => body_m) ?? []);
   });
+  useSignalEffect(() =>
+    viewer.value?.setAxes(state.stage.value === "align" && state.found.value.align !== null),
+  );
   useSignalEffect(() => viewer.value?.setOptions(state.shownView.value, state.legend.value));
   useSignalEffect(() => viewer.value?.setDark(isDark.value));
 
@@ -81,9 +84,10 @@ export function ViewPane() {
 
   const probe = useSignal("");
   const onPointerMove = (event: PointerEvent) => {
-    if (event.buttons !== 0 || !state.result.value) return;
-    const vertex = viewer.peek()?.pickBody(event.offsetX, event.offsetY) ?? -1;
-    const error = state.result.value.vertexErrorMm[vertex];
+    const errorsMm = state.shownBody.value?.errorsMm;
+    if (event.buttons !== 0) return;
+    const vertex = errorsMm ? (viewer.peek()?.pickBody(event.offsetX, event.offsetY) ?? -1) : -1;
+    const error = errorsMm?.[vertex];
     probe.value = error === undefined ? "" : `${millimetres(error)} mm from the scan here`;
   };
 
@@ -114,7 +118,9 @@ export function ViewPane() {
           </button>
         </div>
       )}
-      {state.result.value && state.shownView.value.showBody && state.view.value.heatMap && <Legend />}
+      {state.shownBody.value?.errorsMm && state.shownView.value.showBody && state.view.value.heatMap && (
+        <Legend />
+      )}
       {probe.value && <p class="probe">{probe.value}</p>}
       <BusyNote />
     </section>

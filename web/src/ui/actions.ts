@@ -2,12 +2,19 @@
 import { batch } from "@preact/signals";
 import { CoreClient } from "../core/client";
 import { isolated, offlineReady } from "../core/isolation";
-import { CoreError, type OutputFile, type Settings, type Stage } from "../core/types";
+import {
+  CoreError,
+  type CoreStage,
+  kCoreStages,
+  type OutputFile,
+  type Settings,
+  type Stage,
+} from "../core/types";
 import { save, zipped } from "../result/download";
 import * as state from "./state";
 
 /** Time that a run has to obey a cancel before its worker is ended. */
-const CANCEL_GRACE_MS = 150;
+const CANCEL_GRACE_MS = 120;
 const MAX_THREADS = 8;
 
 const client = new CoreClient(
@@ -39,6 +46,31 @@ async function ensureScan(): Promise<void> {
   if (scanIsInCore || !opened) return;
   state.scan.value = await client.call("open", opened);
   scanIsInCore = true;
+  await configure();
+}
+
+/** Hands the settings to the core; what they make wrong is dropped and marked as stale. */
+async function configure(): Promise<void> {
+  const holding = await client.call("configure", { settings: state.settings.value });
+  keep(kCoreStages.slice(0, holding));
+}
+
+/** Drops the findings of the stages that do not hold any more. */
+function keep(holding: readonly CoreStage[]): void {
+  const dropped = kCoreStages.filter((name) => state.found.value[name] && !holding.includes(name));
+  if (dropped.length === 0) return;
+  batch(() => {
+    const kept = holding.map((name) => [name, state.found.value[name]]);
+    state.found.value = { ...state.NOTHING, ...Object.fromEntries(kept) };
+    state.stale.value = new Set([...state.stale.value, ...dropped]);
+  });
+}
+
+function dropAll(): void {
+  batch(() => {
+    state.found.value = state.NOTHING;
+    state.stale.value = new Set();
+  });
 }
 
 /** Runs `work` as the stage's; keeps busy, progress and problem right. */
@@ -54,7 +86,9 @@ async function working(stage: Stage, work: () => Promise<void>): Promise<void> {
   } catch (error) {
     const known = error instanceof CoreError ? error : new CoreError("internal", String(error));
     if (!client.alive) state.core.value = null;
-    state.problem.value = { stage, error: known };
+    // Next to where it happened; a stop, where the user is.
+    const at = known.code === "cancelled" ? state.stage.peek() : (state.stageAtWork.peek() ?? stage);
+    state.problem.value = { stage: at, error: known };
   } finally {
     batch(() => {
       state.busy.value = null;
@@ -67,7 +101,7 @@ export async function openFile(file: Blob, name: string): Promise<void> {
   if (state.busy.value) return;
   batch(() => {
     state.scan.value = null;
-    state.result.value = null;
+    dropAll();
     state.stage.value = "scan";
   });
   scanIsInCore = false;
@@ -90,15 +124,25 @@ export async function openSample(): Promise<void> {
   if (sample) await openFile(sample, "sample.ply");
 }
 
-/** Registers the opened scan and shows the result. */
-export async function register(show: Stage = "results"): Promise<void> {
+/** Works the opened scan up to a stage, and shows it. What is there already is not worked again, but for the stage itself. */
+export async function run(until: CoreStage, show: Stage = until): Promise<void> {
   if (!state.scan.value) return;
-  state.result.value = null;
-  await working("register", async () => {
+  await working(until, async () => {
     await ensureScan();
-    state.result.value = await client.call("run", { settings: state.settings.value });
-    state.stage.value = show;
+    const again = state.found.value[until] !== null;
+    if (again) keep(kCoreStages.slice(0, kCoreStages.indexOf(until)));
+    const found = await client.call("run", { until, again });
+    batch(() => {
+      state.found.value = found;
+      state.stale.value = new Set([...state.stale.value].filter((name) => !found[name]));
+      state.stage.value = show;
+    });
   });
+}
+
+/** Registers the opened scan and shows the result. */
+export function register(): Promise<void> {
+  return run("register", "results");
 }
 
 export function cancel(): void {
@@ -111,14 +155,18 @@ export function cancel(): void {
     client.end();
     state.core.value = null;
     scanIsInCore = false;
+    keep([]);
   }, grace);
 }
 
-/** Changes settings. A result that they would change is found anew, the stage on show stays. */
-export function change(settings: Partial<Settings>): void {
+/** Changes settings. What they make wrong is dropped; a changed alignment is found anew at once, to be looked at. */
+export async function change(settings: Partial<Settings>): Promise<void> {
   if (state.busy.value) return;
   state.settings.value = { ...state.settings.value, ...settings };
-  if (state.result.value) void register(state.stage.value);
+  if (!scanIsInCore) return;
+  const aligned = state.found.value.align !== null;
+  await working(state.stage.value, configure);
+  if (aligned && !state.found.value.align && !state.problem.value) await run("align", state.stage.value);
 }
 
 async function files(): Promise<OutputFile[]> {

@@ -3,9 +3,11 @@ import { computed, signal } from "@preact/signals";
 import type { CoreInfo, Progress } from "../core/messages";
 import {
   type CoreError,
+  type CoreStage,
   defaultSettings,
+  type Findings,
+  kCoreStages,
   kStages,
-  type ResultData,
   type ScanData,
   type Settings,
   type Stage,
@@ -17,7 +19,14 @@ export const core = signal<CoreInfo | null>(null);
 export const settings = signal<Settings>(defaultSettings);
 
 export const scan = signal<ScanData | null>(null);
-export const result = signal<ResultData | null>(null);
+
+export const NOTHING: Findings = { align: null, keypoints: null, pose: null, register: null };
+/** What the stages found with the settings as they are. */
+export const found = signal<Findings>(NOTHING);
+/** Stages whose finding was dropped because a setting changed. */
+export const stale = signal<ReadonlySet<CoreStage>>(new Set());
+/** The registered body. */
+export const result = computed(() => found.value.register);
 
 export interface Busy {
   /** the stage in the rail that works */
@@ -29,7 +38,7 @@ export const busy = signal<Busy | null>(null);
 export const progress = signal<Progress | null>(null);
 export const problem = signal<{ stage: Stage; error: CoreError } | null>(null);
 
-export type Done = "waiting" | "working" | "done" | "failed";
+export type Done = "waiting" | "working" | "done" | "stale" | "failed";
 
 /** The rail's stage that a stage of the core belongs to. */
 const RAIL: Record<string, Stage> = {
@@ -60,17 +69,28 @@ export const doing = computed(() => {
   return WORDS[name] ?? (name || "Preparing");
 });
 
-/** State of each stage for the rail. While a registration runs, the stages before the one at work are done. */
+/** The rail's stage that works; never one beyond the stage that was asked for. */
+export const stageAtWork = computed<Stage | null>(() => {
+  if (!busy.value) return null;
+  const at = RAIL[progress.value?.stage ?? ""] ?? busy.value.stage;
+  return kStages.indexOf(at) > kStages.indexOf(busy.value.stage) ? busy.value.stage : at;
+});
+
+function isCoreStage(name: Stage): name is CoreStage {
+  return (kCoreStages as readonly string[]).includes(name);
+}
+
+/** State of each stage for the rail. While one works, those before it are done. */
 export const progressOf = computed<Record<Stage, Done>>(() => {
-  const at = busy.value ? (RAIL[progress.value?.stage ?? ""] ?? busy.value.stage) : null;
-  const running = busy.value?.stage === "register";
+  const at = stageAtWork.value;
   const failure = problem.value && problem.value.error.code !== "cancelled" ? problem.value.stage : null;
   const states = kStages.map((name, i): [Stage, Done] => {
     if (name === at) return [name, "working"];
     if (name === failure) return [name, "failed"];
     if (name === "scan") return [name, scan.value ? "done" : "waiting"];
-    const passed = running && at !== null && i < kStages.indexOf(at);
-    return [name, passed || result.value ? "done" : "waiting"];
+    const of = isCoreStage(name) ? name : "register";
+    if (found.value[of] || (at !== null && i < kStages.indexOf(at))) return [name, "done"];
+    return [name, stale.value.has(of) ? "stale" : "waiting"];
   });
   return Object.fromEntries(states) as Record<Stage, Done>;
 });
@@ -106,12 +126,23 @@ export function setView(change: Partial<ViewOptions>): void {
   view.value = { ...view.value, ...change };
 }
 
+/** The body in the 3D view, with its errors when they are known. */
+export const shownBody = computed(() => {
+  const { pose, register } = found.value;
+  if (stage.value === "pose") return pose && { mesh: pose.body, errorsMm: null };
+  if (stage.value !== "register" && stage.value !== "results") return null;
+  return register && { mesh: register.body, errorsMm: register.vertexErrorMm };
+});
+
 /** What the 3D view draws: the user's choice for the result, and what each earlier stage is about. */
 export const shownView = computed<ViewOptions>(() => {
-  const onlyScan = { ...view.value, showScan: true, showBody: false, split: false, scanOpacity: 1 };
-  if (!result.value || stage.value === "scan" || stage.value === "align" || stage.value === "keypoints")
-    return onlyScan;
-  return stage.value === "pose" ? { ...onlyScan, scanOpacity: 0.6 } : view.value;
+  if (!shownBody.value) {
+    return { ...view.value, showScan: true, showBody: false, split: false, scanOpacity: 1 };
+  }
+  if (stage.value === "pose") {
+    return { ...view.value, showScan: true, showBody: true, split: false, scanOpacity: 0.35, bodyOpacity: 1 };
+  }
+  return view.value;
 });
 
 /** Upper end of the error colours, mm. */

@@ -34,6 +34,7 @@ import type { Keypoint, Matrix, Mesh as MeshData, ScanData, Vec3 } from "../core
 import { confidenceColour, viridis } from "../result/colours";
 import { columnMajor } from "../result/transform";
 import type { ViewOptions } from "../ui/state";
+import { bodyAxes, disposeAxes } from "./axes";
 
 BufferGeometry.prototype.computeBoundsTree = computeBoundsTree;
 BufferGeometry.prototype.disposeBoundsTree = disposeBoundsTree;
@@ -58,6 +59,7 @@ export class Viewer {
   private readonly bodyRoot = new Group();
   private readonly keypointRoot = new Group();
   private readonly skeletonRoot = new Group();
+  private readonly axesRoot = new Group();
   private readonly grid = new GridHelper(4, 16);
   private readonly observer: ResizeObserver;
   private options: ViewOptions | null = null;
@@ -83,6 +85,7 @@ export class Viewer {
       this.bodyRoot,
       this.keypointRoot,
       this.skeletonRoot,
+      this.axesRoot,
       this.grid,
     );
     this.grid.visible = false;
@@ -206,6 +209,13 @@ export class Viewer {
     this.request();
   }
 
+  /** Shows the body's directions beside the aligned scan. */
+  setAxes(shown: boolean): void {
+    disposeAxes(this.axesRoot);
+    if (shown) this.axesRoot.add(bodyAxes(new Box3().setFromObject(this.scanRoot)));
+    this.request();
+  }
+
   setOptions(options: ViewOptions, legendMaximumMm: number): void {
     const repaint = options.heatMap !== this.options?.heatMap || legendMaximumMm !== this.legendMaximumMm;
     this.options = options;
@@ -289,6 +299,7 @@ export class Viewer {
     this.observer.disconnect();
     this.controls.dispose();
     for (const root of [this.scanRoot, this.bodyRoot, this.keypointRoot, this.skeletonRoot]) clear(root);
+    disposeAxes(this.axesRoot);
     this.renderer.dispose();
   }
 

@@ -1,8 +1,13 @@
 // Typed view of the WASM module: the only place that knows its entry points.
 import {
+  type AlignData,
   CoreError,
+  type CoreStage,
   type ErrorCode,
+  type Keypoint,
+  kCoreStages,
   type OutputFile,
+  type PoseData,
   type Registration,
   type Settings,
   type ViewData,
@@ -35,11 +40,12 @@ interface Module {
   _vitruvian_cancel(): void;
   _vitruvian_scan_report(): Text;
   _vitruvian_load_model(part: number, data: number, size: number, name: Text): number;
-  _vitruvian_begin(settings: Text): number;
+  _vitruvian_configure(settings: Text): number;
+  _vitruvian_begin(until: number, again: number): number;
   _vitruvian_request_report(): Text;
   _vitruvian_reply_buffer(input: number, output: number, size: number): number;
   _vitruvian_resume(): number;
-  _vitruvian_result_report(): Text;
+  _vitruvian_findings_report(): Text;
   _vitruvian_files_report(format: Text): Text;
 }
 
@@ -65,13 +71,20 @@ interface NetworkRequest {
   inputs: ArrayReference[];
 }
 
-export interface ResultReport {
-  registration: Registration;
-  body: ArrayReference;
-  faces: ArrayReference;
-  errors_mm: ArrayReference;
-  height_m: number;
-  views: { width: number; height: number; rgb: ArrayReference; landmarks: ViewData["landmarks"] }[];
+/** What the stages found, with arrays that are still in the module's memory. */
+export interface FindingsReport {
+  align: AlignData | null;
+  keypoints: {
+    views: (Omit<ViewData, "rgb"> & { rgb: ArrayReference })[];
+    joints: Keypoint[];
+  } | null;
+  pose: { joints: PoseData["joints"]; body: ArrayReference; faces: ArrayReference } | null;
+  result: {
+    registration: Registration;
+    body: ArrayReference;
+    faces: ArrayReference;
+    errors_mm: ArrayReference;
+  } | null;
 }
 
 export type RunNetwork = (network: Network, input: Float32Array) => Promise<Float32Array[]>;
@@ -135,10 +148,18 @@ export class Core {
     }
   }
 
-  /** Registers the opened scan. @throws CoreError */
-  async register(settings: Settings, runNetwork: RunNetwork): Promise<ResultReport> {
+  /** Takes settings over. @returns how many of kCoreStages still hold. @throws CoreError */
+  configure(settings: Settings): number {
+    const answer = this.withText(JSON.stringify(settings), (text) =>
+      this.check(this.module._vitruvian_configure(text)),
+    );
+    return answer - 1;
+  }
+
+  /** Works the opened scan up to a stage. @param again that stage anew, though it was reached. @throws CoreError */
+  async run(until: CoreStage, again: boolean, runNetwork: RunNetwork): Promise<FindingsReport> {
     this.cancelled = false;
-    this.withText(JSON.stringify(settings), (text) => this.check(this.module._vitruvian_begin(text)));
+    this.check(this.module._vitruvian_begin(kCoreStages.indexOf(until), Number(again)));
     for (;;) {
       await this.finished();
       const request = this.json<NetworkRequest | null>(this.module._vitruvian_request_report());
@@ -146,7 +167,7 @@ export class Core {
       await this.answer(request, runNetwork);
       this.check(this.module._vitruvian_resume());
     }
-    return this.json<ResultReport>(this.module._vitruvian_result_report());
+    return this.json<FindingsReport>(this.module._vitruvian_findings_report());
   }
 
   /** What the command line writes. */

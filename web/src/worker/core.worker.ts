@@ -1,6 +1,6 @@
 // The worker: holds the core and the networks, answers the page's calls one after the other (a cancel at once).
 import type { Calls, Kind, Reply, Request } from "../core/messages";
-import { CoreError, type ResultData, type ScanData } from "../core/types";
+import { CoreError, type Findings, type ScanData } from "../core/types";
 import { Core } from "./core";
 import type { Networks } from "./networks";
 
@@ -73,16 +73,31 @@ const handlers: Handlers = {
     };
   },
 
-  async run({ settings }): Promise<ResultData> {
+  async configure({ settings }) {
+    return theCore().configure(settings);
+  },
+
+  async run({ until, again }): Promise<Findings> {
     const core = theCore();
     const networks = await prepared();
-    const report = await core.register(settings, (network, input) => networks.run(network, input));
+    const { align, keypoints, pose, result } = await core.run(until, again, (network, input) =>
+      networks.run(network, input),
+    );
     return {
-      registration: report.registration,
-      height_m: report.height_m,
-      body: { positions: core.floats(report.body), indices: core.integers(report.faces) },
-      vertexErrorMm: core.floats(report.errors_mm),
-      views: report.views.map((view) => ({ ...view, rgb: core.octets(view.rgb) })),
+      align,
+      keypoints: keypoints && {
+        joints: keypoints.joints,
+        views: keypoints.views.map((view) => ({ ...view, rgb: core.octets(view.rgb) })),
+      },
+      pose: pose && {
+        joints: pose.joints,
+        body: { positions: core.floats(pose.body), indices: core.integers(pose.faces) },
+      },
+      register: result && {
+        registration: result.registration,
+        body: { positions: core.floats(result.body), indices: core.integers(result.faces) },
+        vertexErrorMm: core.floats(result.errors_mm),
+      },
     };
   },
 

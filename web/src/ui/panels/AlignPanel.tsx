@@ -2,8 +2,8 @@ import type { Axis, Unit } from "../../core/types";
 import { metres } from "../../result/format";
 import { change } from "../actions";
 import { Choice } from "../Choice";
-import { RegisterHere } from "../RegisterHere";
-import { busy as isBusy, result, scan, settings } from "../state";
+import { RunStage } from "../RunStage";
+import { found, busy as isBusy, scan, settings } from "../state";
 
 const UNITS: [Unit | "auto", string][] = [
   ["auto", "Auto"],
@@ -22,57 +22,61 @@ const AXES: [Axis | "auto", string][] = [
   ["-z", "−Z"],
 ];
 
+const axisName = (axis: Axis) => AXES.find(([value]) => value === axis)?.[1] ?? axis;
+
 const isPlausible = (height: number) => height > 0.5 && height < 2.6;
 
 export function AlignPanel() {
-  const found = result.value;
+  const { align } = found.value;
   const busy = isBusy.value !== null;
   if (!scan.value) return <p class="quiet">Open a scan first.</p>;
   const { unit, up, front } = settings.value;
   return (
     <>
-      {found?.registration.alignment ? (
+      <p class="quiet">
+        Which way is up, which way the person faces, and in what unit the file counts: found from the scan, or
+        set here.
+      </p>
+      <RunStage stage="align" />
+      {align && (
         <dl>
           <dt>Unit</dt>
-          <dd>{found.registration.scan.unit}</dd>
-          <dt>Up, front</dt>
-          <dd>
-            {found.registration.alignment.up}, {found.registration.alignment.front}
+          <dd>{align.unit}</dd>
+          <dt>Up</dt>
+          <dd>{axisName(align.up)}</dd>
+          <dt>Front</dt>
+          <dd class={align.front_is_known ? "" : "warn"}>
+            {align.front_is_known ? axisName(align.front) : "not recognised: set it below"}
           </dd>
           <dt>Height of the scan</dt>
-          <dd class={isPlausible(found.height_m) ? "" : "warn"}>
-            {metres(found.height_m)}
-            {!isPlausible(found.height_m) && " – is the unit right?"}
+          <dd class={isPlausible(align.height_m) ? "" : "warn"}>
+            {metres(align.height_m)}
+            {!isPlausible(align.height_m) && " – is the unit right?"}
           </dd>
         </dl>
-      ) : (
-        <p class="quiet">
-          Which way is up, which way the person faces, and in what unit the file counts: found from the scan,
-          or set here.
-        </p>
       )}
+      {align?.note && <p class="note">{align.note}</p>}
       <Choice
         label="Unit"
         value={unit}
         options={UNITS}
         disabled={busy}
-        onChange={(value) => change({ unit: value })}
+        onChange={(value) => void change({ unit: value })}
       />
       <Choice
         label="Up"
         value={up}
         options={AXES}
         disabled={busy}
-        onChange={(value) => change({ up: value })}
+        onChange={(value) => void change({ up: value })}
       />
       <Choice
         label="Front"
         value={front}
         options={AXES}
         disabled={busy}
-        onChange={(value) => change({ front: value })}
+        onChange={(value) => void change({ front: value })}
       />
-      <RegisterHere stage="align" />
     </>
   );
 }

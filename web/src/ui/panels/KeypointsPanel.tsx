@@ -2,21 +2,33 @@ import { useEffect, useRef } from "preact/hooks";
 import type { ViewData } from "../../core/types";
 import { confidenceColour } from "../../result/colours";
 import { displayName, percent } from "../../result/format";
-import { RegisterHere } from "../RegisterHere";
-import { result, scan, setView, view } from "../state";
+import { change } from "../actions";
+import { Choice } from "../Choice";
+import { RunStage } from "../RunStage";
+import { busy, found, scan, settings, setView, view } from "../state";
+
+const VIEWS: ["8" | "2", string][] = [
+  ["8", "8, all round"],
+  ["2", "2, front and side (paper)"],
+];
 
 export function KeypointsPanel() {
-  const found = result.value;
+  const { keypoints } = found.value;
   if (!scan.value) return <p class="quiet">Open a scan first.</p>;
   return (
     <>
-      {!found && (
-        <p class="quiet">
-          The scan is drawn from several sides; a pose network finds 33 landmarks in each picture.
-        </p>
-      )}
-      {!found && <RegisterHere stage="keypoints" />}
-      {found && (
+      <p class="quiet">
+        The scan is drawn from several sides; a pose network finds 33 landmarks in each picture.
+      </p>
+      <Choice
+        label="Pictures"
+        value={settings.value.views === 8 ? "8" : "2"}
+        options={VIEWS}
+        disabled={busy.value !== null}
+        onChange={(value) => void change({ views: value === "8" ? 8 : 2 })}
+      />
+      <RunStage stage="keypoints" />
+      {keypoints && (
         <>
           <label class="check">
             <input
@@ -27,11 +39,11 @@ export function KeypointsPanel() {
             Show on the scan
           </label>
           <div class="views">
-            {found.views.map((each, i) => (
+            {keypoints.views.map((each, i) => (
               <ViewPicture
                 key={i}
                 data={each}
-                label={`View ${i + 1} of ${found.views.length} with landmarks`}
+                label={`View ${i + 1} of ${keypoints.views.length} with landmarks`}
               />
             ))}
           </div>
@@ -48,7 +60,7 @@ export function KeypointsPanel() {
               </tr>
             </thead>
             <tbody>
-              {found.registration.keypoints.map(({ joint, confidence, source }) => (
+              {keypoints.joints.map(({ joint, confidence, source }) => (
                 <tr key={joint}>
                   <th scope="row">
                     <Dot confidence={confidence} /> {displayName(joint)}

@@ -1,39 +1,43 @@
-import type { Gender } from "../../core/types";
 import { seconds } from "../../result/format";
-import { change, register } from "../actions";
-import { Choice } from "../Choice";
-import { busy as isBusy, result, scan, settings } from "../state";
+import { BodyChoice } from "../BodyChoice";
+import { RunStage } from "../RunStage";
+import { result, scan } from "../state";
+import { ViewControls } from "../ViewControls";
 
-const BODIES: [Gender, string][] = [
-  ["neutral", "Neutral"],
-  ["female", "Female"],
-  ["male", "Male"],
-];
+/** Entries of timing_ms, in the order of the work. */
+const TIMES = [
+  ["read", "Read the scan"],
+  ["align", "Find up"],
+  ["project", "Draw the pictures"],
+  ["detect", "Find keypoints"],
+  ["pose", "Pose the body"],
+  ["fit", "Fit"],
+  ["refine", "Refine and measure"],
+  ["detail", "Detail"],
+  ["total", "Total"],
+] as const;
 
 export function RegisterPanel() {
-  const busy = isBusy.value !== null;
   if (!scan.value) return <p class="quiet">Open a scan first.</p>;
-  const times = Object.entries(result.value?.registration.timing_ms ?? {}).filter(([, time]) => time > 0);
+  const registered = result.value;
+  const times = registered?.registration.timing_ms ?? {};
   return (
     <>
-      <Choice
-        label="Body model"
-        value={settings.value.gender}
-        options={BODIES}
-        disabled={busy}
-        onChange={(gender) => change({ gender })}
-      />
-      <button type="button" class="main" disabled={busy} onClick={() => void register()}>
-        {result.value ? "Register again" : "Register"} <kbd>R</kbd>
-      </button>
-      {times.length > 0 && (
+      <p class="quiet">
+        Pose and shape are fitted to the surface together, from coarse to fine; then the distances are
+        measured.
+      </p>
+      <BodyChoice />
+      <RunStage stage="register" />
+      {registered && <ViewControls />}
+      {registered && (
         <table>
           <caption>Time by stage</caption>
           <tbody>
-            {times.map(([name, time]) => (
-              <tr key={name}>
+            {TIMES.filter(([key]) => (times[key] ?? 0) > 0).map(([key, name]) => (
+              <tr key={key} class={key === "total" ? "all" : ""}>
                 <th scope="row">{name}</th>
-                <td class="figure">{seconds(time)}</td>
+                <td class="figure">{seconds(times[key] ?? 0)}</td>
               </tr>
             ))}
           </tbody>

@@ -1,10 +1,11 @@
 import { useSignal } from "@preact/signals";
 import type { SurfaceError } from "../../core/types";
 import { displayName, millimetres, percent } from "../../result/format";
-import { download, downloadAll, register } from "../actions";
+import { download, downloadAll } from "../actions";
 import { Choice } from "../Choice";
 import { ErrorHistogram } from "../ErrorHistogram";
-import { busy as isBusy, type Measure, result, scan } from "../state";
+import { RegisterAll } from "../RunStage";
+import { type Measure, result, scan, stale } from "../state";
 import { ViewControls } from "../ViewControls";
 
 const VERDICTS = {
@@ -18,9 +19,12 @@ export function ResultsPanel() {
   if (!scan.value) return <p class="quiet">Open a scan first.</p>;
   if (!data) {
     return (
-      <button type="button" class="main" disabled={isBusy.value !== null} onClick={() => void register()}>
-        Register <kbd>R</kbd>
-      </button>
+      <>
+        {stale.value.has("register") && (
+          <p class="note">A change has made the result out of date. Register again to see the new one.</p>
+        )}
+        <RegisterAll main />
+      </>
     );
   }
   const { verdict, surface_error, joints } = data.registration;

@@ -1,5 +1,6 @@
 import { bytes, integer } from "../../result/format";
-import { openSample, register } from "../actions";
+import { openSample } from "../actions";
+import { RegisterAll } from "../RunStage";
 import { core, busy as isBusy, scan } from "../state";
 
 export function ScanPanel({ pick }: { pick: () => void }) {
@@ -39,9 +40,7 @@ export function ScanPanel({ pick }: { pick: () => void }) {
           {opened.decimated && (
             <p class="note">The view shows a thinned copy; all points are used for the registration.</p>
           )}
-          <button type="button" class="main" disabled={busy} onClick={() => void register()}>
-            Register <kbd>R</kbd>
-          </button>
+          <RegisterAll main />
         </>
       )}
       {core.value?.threads === 1 && (
