@@ -83,10 +83,12 @@ configure() {
   once "configure-$1" "CMakePresets.json" "$BUILD/$1/build.ninja" cmake --preset "$1"
 }
 
-# build_preset PRESET [TARGET]
+# build_preset PRESET [TARGET...]
 build_preset() {
-  configure "$1" || return $?
-  cmake --build "$BUILD/$1" -j "$JOBS" --target "${2:-all}"
+  local preset=$1
+  shift
+  configure "$preset" || return $?
+  cmake --build "$BUILD/$preset" -j "$JOBS" --target "${@:-all}"
 }
 
 copy_native_models() {
@@ -128,7 +130,7 @@ prepare() {
   if [[ $parts == *" tests "* ]]; then
     run_step "native core and tests" build_preset native || status=1
   elif [[ $parts == *" native "* ]]; then
-    run_step "native core" build_preset native vitruvian || status=1
+    run_step "native core" build_preset native vitruvian vitruvian-landmarks || status=1
   fi
   if [[ -n $models ]] && ! run_step "models (log: build/models.log)" wait $models; then
     tail -n 20 "$BUILD/models.log" >&2

@@ -1,7 +1,9 @@
+import { execFileSync } from "node:child_process";
+import { readdirSync } from "node:fs";
 import type { Page } from "playwright-core";
 import { describe, expect } from "vitest";
 import type { Registration } from "../src/core/types";
-import { downloaded, openSample, PATIENCE_MS, test, verdict } from "./harness";
+import { downloaded, openSample, PATIENCE_MS, root, test, verdict } from "./harness";
 
 const STAGES = ["Align", "Keypoints", "Pose", "Register"];
 
@@ -116,5 +118,71 @@ describe("the stages one by one", () => {
     await page.keyboard.press("r");
     await verdict(page);
     expect(await result(page)).toBe(before);
+  });
+});
+
+interface Seen {
+  dots: { x: number; y: number }[];
+  /** side of the square that the network looked at, pixels of the picture */
+  side: number;
+}
+
+/** Landmarks that the page's own worker sees in the pictures of the sample scan. */
+function seenByPage(page: Page): Promise<Seen[]> {
+  const worker = readdirSync(`${root}/web/dist/assets`).find((name) => name.startsWith("core.worker"));
+  return page.evaluate(async (name) => {
+    const worker = new Worker(new URL(`assets/${name}`, document.baseURI), { type: "module" });
+    // biome-ignore lint/suspicious/noExplicitAny: runs in the page, where no types are
+    const call = (kind: string, args: object): Promise<any> =>
+      new Promise((resolve, reject) => {
+        worker.onmessage = ({ data }) => {
+          if ("progress" in data) return;
+          if (data.ok) resolve(data.value);
+          else reject(new Error(data.error.message));
+        };
+        worker.postMessage({ id: 1, kind, args });
+      });
+    const file = await (await fetch("models/sample.ply")).blob();
+    await call("start", { base: document.baseURI, threads: 2 });
+    await call("open", { file, name: "sample.ply" });
+    const found = await call("run", { until: "keypoints", again: false });
+    worker.terminate();
+    /** The silhouette's larger extent, and a quarter of it round about. */
+    const side = ({ width, rgb }: { width: number; rgb: Uint8Array }) => {
+      let [left, right, top, bottom] = [Infinity, -1, Infinity, -1];
+      for (let i = 0; i < rgb.length / 3; ++i) {
+        if (rgb[3 * i] === rgb[0] && rgb[3 * i + 1] === rgb[1] && rgb[3 * i + 2] === rgb[2]) continue;
+        const [x, y] = [i % width, Math.floor(i / width)];
+        [left, right, top, bottom] = [
+          Math.min(left, x),
+          Math.max(right, x),
+          Math.min(top, y),
+          Math.max(bottom, y),
+        ];
+      }
+      return 1.25 * (Math.max(right - left, bottom - top) + 1);
+    };
+    // biome-ignore lint/suspicious/noExplicitAny: as above
+    return found.keypoints.views.map((view: any) => ({ dots: view.landmarks, side: side(view) }));
+  }, worker);
+}
+
+describe("the keypoint networks", () => {
+  test("see in the browser what they see natively", async ({ page }) => {
+    const folders = [`${root}/models/generated`, `${root}/models`];
+    const tool = `${root}/build/native/vitruvian-landmarks`;
+    const native: number[][][] = JSON.parse(
+      execFileSync(tool, [`${folders[0]}/sample.ply`, ...folders]).toString(),
+    );
+    const seen = await seenByPage(page);
+    expect(seen.length).toBe(native.length);
+    const differences = seen.flatMap(({ dots, side }, v) =>
+      dots.map(({ x, y }, i) => (256 / side) * Math.hypot(x - native[v]![i]![0]!, y - native[v]![i]![1]!)),
+    );
+    differences.sort((a, b) => a - b);
+    const worst = differences.at(-1)!;
+    const middle = differences[differences.length >> 1]!;
+    console.log(`median ${middle.toFixed(4)}, largest ${worst.toFixed(4)} px of the 256 px crop`);
+    expect(worst).toBeLessThan(0.1);
   });
 });
