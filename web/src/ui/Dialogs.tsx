@@ -1,7 +1,9 @@
-import type { Signal } from "@preact/signals";
+import { type Signal, useSignal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { isolated } from "../core/isolation";
+import { bytes } from "../result/format";
+import { memory } from "./actions";
 import * as state from "./state";
 
 function Dialog({
@@ -36,6 +38,15 @@ function Dialog({
 
 export function About() {
   const core = state.core.value;
+  const held = useSignal<number | null>(null);
+  useEffect(() => {
+    memory().then(
+      (heap) => {
+        held.value = heap;
+      },
+      () => {},
+    );
+  }, [held]);
   return (
     <Dialog title="About Vitruvian" open={state.aboutOpen}>
       <p>
@@ -51,6 +62,12 @@ export function About() {
         <dd>{core?.version ?? __VERSION__}</dd>
         <dt>Threads</dt>
         <dd>{core?.threads ?? (isolated() ? "available" : "not available here")}</dd>
+        {held.value !== null && (
+          <>
+            <dt>Memory</dt>
+            <dd>{bytes(held.value)}</dd>
+          </>
+        )}
       </dl>
       <h3>How to cite</h3>
       <p>

@@ -29,8 +29,10 @@ let opened: { file: Blob; name: string } | null = null;
 let scanIsInCore = false;
 
 export function threadsWanted(): number {
-  if (!isolated() || new URLSearchParams(location.search).get("threads") === "1") return 1;
-  return Math.min(navigator.hardwareConcurrency || 2, MAX_THREADS);
+  if (!isolated()) return 1;
+  // ?threads=N, for measuring and for machines that should keep cores for something else.
+  const limit = Number(new URLSearchParams(location.search).get("threads")) || MAX_THREADS;
+  return Math.max(1, Math.min(navigator.hardwareConcurrency || 2, MAX_THREADS, limit));
 }
 
 async function ensureCore(): Promise<void> {
@@ -184,7 +186,8 @@ export async function downloadAll(): Promise<void> {
   save(zip.name, zip.data);
 }
 
-/** Bytes that the core holds, for tests and the About box. */
-export function memory(): Promise<{ heap: number }> {
-  return client.call("memory", {});
+/** Bytes of memory that the core has; null when it was not started. */
+export async function memory(): Promise<number | null> {
+  if (!client.alive) return null;
+  return (await client.call("memory", {})).heap;
 }

@@ -212,7 +212,10 @@ export class Viewer {
   /** Shows the body's directions beside the aligned scan. */
   setAxes(shown: boolean): void {
     disposeAxes(this.axesRoot);
-    if (shown) this.axesRoot.add(bodyAxes(new Box3().setFromObject(this.scanRoot)));
+    if (shown) {
+      this.axesRoot.add(bodyAxes(new Box3().setFromObject(this.scanRoot)));
+      this.fit();
+    }
     this.request();
   }
 
@@ -240,7 +243,7 @@ export class Viewer {
   /** Moves the camera, keeping its direction, until everything is in sight. */
   fit(): void {
     const box = new Box3();
-    for (const root of [this.scanRoot, this.bodyRoot]) {
+    for (const root of [this.scanRoot, this.bodyRoot, this.axesRoot]) {
       if (root.visible && root.children.length > 0) box.union(new Box3().setFromObject(root));
     }
     if (box.isEmpty()) box.set(new Vector3(-0.5, -0.9, -0.2), new Vector3(0.5, 0.9, 0.2));
