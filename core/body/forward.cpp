@@ -1,6 +1,7 @@
 #include "body/forward.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <numbers>
 
 namespace vitruvian {
@@ -152,12 +153,36 @@ void skin_vertices(const BodyModel& model, const Skeleton& skeleton, const Verte
 }
 
 template <typename Scalar>
-VertexMatrix<Scalar> posed_vertices(const BodyModel& model, const BodyState& state) {
+VertexMatrix<Scalar> posed_vertices(const BodyModel& model, const BodyState& state, const Points3f& offsets) {
   VertexMatrix<Scalar> rest, posed;
   shape_vertices(model, state.betas, rest);
   add_correctives(model, state, rest);
+  if (offsets.cols() > 0) rest += offsets.cast<Scalar>();
   skin_vertices(model, pose_skeleton(model, state), rest, posed);
   return posed;
+}
+
+Points3f offsets_from_displacements(const BodyModel& model, const Skeleton& skeleton,
+                                    const Points3d& displacement) {
+  // Blended rotations have singular values in [0, 1]; below this one a direction counts as lost.
+  constexpr double kLeastStretch = 0.2;
+  Points3f offsets(3, displacement.cols());
+  for (Index v = 0; v < displacement.cols(); ++v) {
+    Mat3d blended = Mat3d::Zero();
+    for (Index k = 0; k < model.skin_joint.rows(); ++k) {
+      const double weight = model.skin_weight(k, v);
+      if (weight == 0) break;
+      blended += weight * skeleton.global[model.skin_joint(k, v)];
+    }
+    const Eigen::JacobiSVD<Mat3d> svd(blended, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Vec3d along = svd.matrixU().transpose() * displacement.col(v);
+    for (int k = 0; k < 3; ++k) {
+      const double stretch = svd.singularValues()[k];
+      along[k] = stretch > kLeastStretch ? along[k] / stretch : 0;
+    }
+    offsets.col(v) = (svd.matrixV() * along).cast<float>();
+  }
+  return offsets;
 }
 
 #define VITRUVIAN_INSTANTIATE(Scalar)                                                            \
@@ -165,7 +190,7 @@ VertexMatrix<Scalar> posed_vertices(const BodyModel& model, const BodyState& sta
   template void add_correctives(const BodyModel&, const BodyState&, VertexMatrix<Scalar>&);      \
   template void skin_vertices(const BodyModel&, const Skeleton&, const VertexMatrix<Scalar>&,    \
                               VertexMatrix<Scalar>&);                                            \
-  template VertexMatrix<Scalar> posed_vertices(const BodyModel&, const BodyState&);
+  template VertexMatrix<Scalar> posed_vertices(const BodyModel&, const BodyState&, const Points3f&);
 VITRUVIAN_INSTANTIATE(float)
 VITRUVIAN_INSTANTIATE(double)
 #undef VITRUVIAN_INSTANTIATE

@@ -53,7 +53,16 @@ void skin_vertices(const BodyModel& model, const Skeleton& skeleton, const Verte
                    VertexMatrix<Scalar>& posed);
 
 /// The whole forward model M(beta, theta) + translation; 3 x V in the body frame.
+/// @param offsets  3 x V, metres, rest frame: added to the rest vertices before skinning; joints do not
+/// follow them. Without columns: none.
 template <typename Scalar>
-VertexMatrix<Scalar> posed_vertices(const BodyModel& model, const BodyState& state);
+VertexMatrix<Scalar> posed_vertices(const BodyModel& model, const BodyState& state,
+                                    const Points3f& offsets = Points3f());
+
+/// Rest-frame offsets that move each posed vertex by `displacement` (3 x V, body frame, metres): the inverse
+/// of its blended skinning matrix. Where blending has flattened that matrix (a joint twisted by nearly half a
+/// turn), the directions it lost stay without offset.
+Points3f offsets_from_displacements(const BodyModel& model, const Skeleton& skeleton,
+                                    const Points3d& displacement);
 
 }  // namespace vitruvian

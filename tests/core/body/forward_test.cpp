@@ -59,6 +59,49 @@ TEST(Forward, JointsFollowTheRegressorInRestPose) {
   EXPECT_LT((pose_skeleton(model, state).joints - expected).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+TEST(Forward, OffsetsMoveTheRestVerticesAndNoJoint) {
+  const BodyModel model = testing::random_model(10, 24, 60, 8, 4);
+  const BodyState rest = BodyState::rest(model);
+  Points3f offsets = Points3f::Zero(3, model.vertex_count());
+  offsets.col(7) = Vec3f(0.01f, -0.02f, 0.03f);
+  const Points3d moved = posed_vertices<double>(model, rest, offsets) - posed_vertices<double>(model, rest);
+  EXPECT_LT((moved - offsets.cast<double>()).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_EQ(posed_vertices<double>(model, rest, Points3f::Zero(3, model.vertex_count())),
+            posed_vertices<double>(model, rest));
+}
+
+TEST(Forward, OffsetsFromDisplacementsUndoTheSkinning) {
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(seed);
+    const BodyModel model = testing::random_model(seed, 24, 60, 8, 4);
+    // Where rotations differ by less than 60 degrees no direction is lost.
+    const BodyState state = testing::random_state(model, seed, 0.08);
+    Random random(seed);
+    Points3d displacement(3, model.vertex_count());
+    for (Index i = 0; i < displacement.size(); ++i) displacement.data()[i] = 0.02 * random.normal();
+    const Points3f offsets = offsets_from_displacements(model, pose_skeleton(model, state), displacement);
+    const Points3d moved =
+        posed_vertices<double>(model, state, offsets) - posed_vertices<double>(model, state);
+    EXPECT_LT((moved - displacement).cwiseAbs().maxCoeff(), 1e-8);
+  }
+}
+
+// Two joints that share a vertex in equal parts, turned against each other by a half turn: skinning maps the
+// plane of the turn to a point, and no offset can move the vertex within it.
+TEST(Forward, OffsetsStayBoundedWhereSkinningIsFlat) {
+  BodyModel model = testing::random_model(11, 2, 12, 2, 2);
+  model.parent = {-1, 0};
+  for (int v = 0; v < 12; ++v) {
+    model.skin_joint.col(v) << 0, 1;
+    model.skin_weight.col(v) << 0.5f, 0.5f;
+  }
+  BodyState state = BodyState::rest(model);
+  state.rotation[1] = Eigen::AngleAxisd(std::numbers::pi, Vec3d::UnitX()).toRotationMatrix();
+  const Points3d displacement = Points3d::Constant(3, 12, 0.01);
+  const Points3f offsets = offsets_from_displacements(model, pose_skeleton(model, state), displacement);
+  EXPECT_LT((offsets.colwise() - Vec3f(0.01f, 0, 0)).cwiseAbs().maxCoeff(), 1e-7f);
+}
+
 TEST(BodyState, AxisAngleRoundTripOverNastyAngles) {
   Random random(9);
   for (const double angle : {0.0, 1e-9, 1e-5, 0.01, 1.0, 3.0, std::numbers::pi - 1e-6, std::numbers::pi}) {
