@@ -138,8 +138,6 @@ void settle_register(const CLI::App& command, const Pending& pending, RegisterAr
     a.not_available.push_back("--method " + to_string(a.settings.method));
   if (a.settings.solver != SolverKind::fast)
     a.not_available.push_back("--solver " + to_string(a.settings.solver));
-  if (a.settings.detail != DetailMode::off)
-    a.not_available.push_back("--detail " + to_string(a.settings.detail));
   if (pending.init.empty()) return;
   const std::optional<InitMode> init = value_named<InitMode>(pending.init);
   if (!init || *init == InitMode::tpose) {

@@ -76,12 +76,14 @@ void write_outputs(Registration& registration, const std::string& folder, MeshFo
     mesh = mesh_bytes(registration, format);
     kept.push_back(registered_mesh_name(format));
     if (registration.surface_error) kept.emplace_back("errors.csv");
+    if (registration.offsets.cols() > 0) kept.emplace_back(kOffsetsFile);
   }
   make_folders(folder);
   remove_stale_outputs(folder, kept);
   if (has_mesh) {
     write_file(path(registered_mesh_name(format)), mesh);
     if (registration.surface_error) write_file(path("errors.csv"), errors_csv(*registration.surface_error));
+    if (registration.offsets.cols() > 0) write_file(path(kOffsetsFile), offsets_npz(registration.offsets));
   }
   registration.timing_ms.write = milliseconds_since(begin);
   registration.timing_ms.total += registration.timing_ms.write;
@@ -230,6 +232,7 @@ class RegisterRun {
     registration.registered_vertices.resize(3, 0);
     registration.registered_faces.resize(3, 0);
     registration.vertex_error_mm = {};
+    registration.offsets.resize(3, 0);
   }
 
   const RegisterArguments& arguments_;

@@ -183,8 +183,8 @@ SurfaceSamples sample_near(const ScanSurface& scan, const Points3f& body, double
     if (near[scan.faces(0, f)] + near[scan.faces(1, f)] + near[scan.faces(2, f)] == 3)
       faces.col(near_faces++) = scan.faces.col(f);
   }
-  faces.conservativeResize(3, near_faces);
-  if (near_faces > 0) return sample_surface(scan.points, faces, scan.normals, count, seed);
+  if (near_faces > 0)
+    return sample_surface(scan.points, faces.leftCols(near_faces), scan.normals, count, seed);
   if (scan.mesh != nullptr || near_points == 0) return {Points3f(3, 0), Points3f(3, 0), {}};
 
   Points3f points(3, near_points), normals(3, near_points);

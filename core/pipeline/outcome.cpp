@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "align/frame.h"
+#include "detail/vertex_offsets.h"
 #include "keypoints/left_right.h"
 #include "measure/surface_error_compute.h"
 #include "measure/verdict_features.h"
@@ -43,6 +44,13 @@ std::vector<JointFinding> keypoint_disagreement(const std::vector<LandmarkTarget
 Points3d scan_from_body(const OutcomeInput& input, const Points3d& body_points) {
   const Mat4d inverse = input.body_from_scan.inverse();
   return (inverse.topLeftCorner<3, 3>() * body_points).colwise() + inverse.topRightCorner<3, 1>();
+}
+
+SurfaceMeasurement measured_body(const BodyModel& body, const Points3d& vertices, const ScanSurface& scan,
+                                 const Execution& execution) {
+  const Points3f vertices_float = vertices.cast<float>();
+  const Points3f normals = vertex_normals(vertices_float, body.faces);
+  return measure_surface({vertices_float, normals, body.faces, body.segment}, scan, execution);
 }
 
 }  // namespace
@@ -85,11 +93,8 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
 
   // The result is what the double-precision forward model says, so that it can be rebuilt from the
   // parameters.
-  const Points3d vertices = posed_vertices<double>(body, state);
-  const Points3f vertices_float = vertices.cast<float>();
-  const Points3f normals = vertex_normals(vertices_float, body.faces);
-  const SurfaceMeasurement measured =
-      measure_surface({vertices_float, normals, body.faces, body.segment}, surface, execution);
+  Points3d vertices = posed_vertices<double>(body, state);
+  SurfaceMeasurement measured = measured_body(body, vertices, surface, execution);
 
   const Skeleton skeleton = pose_skeleton(body, state);
   VerdictFeatures features = features_from(measured);
@@ -107,13 +112,24 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
                   body.vertex_count(), body.face_count(), input.fit_model.betas, body.joint_count()};
   result.alignment = describe_alignment(input.body_from_scan, input.unit, input.method);
   result.keypoints = smpl_keypoints(input.landmarks.swap_aware);
-  result.parameters = BodyParameters{state.betas, state.axis_angle(), state.translation};
+  result.parameters = BodyParameters{state.betas, state.axis_angle(), state.translation, ""};
   const Points3d joints_scan = scan_from_body(input, skeleton.joints);
   for (int j = 0; j < body.joint_count(); ++j) {
     result.joints.push_back({body.joint_names[j], skeleton.joints.col(j), joints_scan.col(j)});
   }
-  result.surface_error = measured.error;
   result.verdict = judge(features);
+  // Offsets on top of a wrong pose would only dress it up.
+  if (input.settings.detail == DetailMode::vertex && result.verdict.status != VerdictStatus::failed) {
+    input.begin_stage(&Timing::detail);
+    DetailSettings detail;
+    detail.seed = input.settings.seed + 29;
+    result.offsets = vertex_offsets(body, state, surface, detail, execution);
+    result.parameters->offsets_file = kOffsetsFile;
+    result.parametric_error = measured.error;
+    vertices = posed_vertices<double>(body, state, result.offsets);
+    measured = measured_body(body, vertices, surface, execution);
+  }
+  result.surface_error = measured.error;
   result.settings = input.settings;
   result.registered_vertices = scan_from_body(input, vertices);
   result.registered_faces = body.faces;

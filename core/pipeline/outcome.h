@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "align/units.h"
 #include "fit/hypotheses.h"
 #include "fit/refine.h"
@@ -19,14 +21,17 @@ struct OutcomeInput {
   const Mat4d& body_from_scan;
   const HypothesisResult& fit;
   const SeenLandmarks& landmarks;  ///< body frame
-  UnitCandidate unit;
-  std::string unit_note;
-  std::string method;
+  UnitCandidate unit{};
+  std::string unit_note{};
+  std::string method{};
   double stature = 0;
+  /// Called when the work turns to another stage, for its time.
+  std::function<void(double Timing::*)> begin_stage = [](double Timing::*) {};
 };
 
-/// Refines the fit on the whole scan, measures it, judges it, and puts the result together in the scan's
-/// frame.
+/// Refines the fit on the whole scan, measures it, judges it, adds vertex offsets when they are wanted, and
+/// puts the result together in the scan's frame. The verdict is about the parametric body: offsets would
+/// cover up what it is judged from.
 Registration make_outcome(const OutcomeInput& input, const Execution& execution);
 
 /// The transform in the words of the report.

@@ -29,8 +29,6 @@ void require_offered(const Settings& settings) {
   if (settings.method != Method::ours || settings.solver != SolverKind::fast) {
     throw Error(ErrorCode::not_available, "the published method and solver are not yet available");
   }
-  if (settings.detail != DetailMode::off)
-    throw Error(ErrorCode::not_available, "--detail vertex is not yet available");
   if (settings.init != InitMode::automatic && settings.init != InitMode::keypoints) {
     throw Error(ErrorCode::not_available, "--init tpose is not yet available");
   }
@@ -239,12 +237,13 @@ Registration RegistrationPipeline::finish() {
   input.unit_note = units_.note;
   input.method = attempts_[best.attempt].method();
   input.stature = best.stature;
+  input.begin_stage = [this](double Timing::*stage) { clock_.enter(stage); };
   Registration registration = make_outcome(input, execution_);
   clock_.pause();
   registration.timing_ms = clock_.sum();
   registration.timing_ms.read = read_ms_;
   registration.timing_ms.total += read_ms_;
-  execution_.progress("refine", 1);
+  execution_.progress(settings_.detail == DetailMode::off ? "refine" : "detail", 1);
   return registration;
 }
 

@@ -34,11 +34,15 @@ struct Keypoint {
   KeypointSource source = KeypointSource::none;
 };
 
+/// Name of the file of vertex offsets beside registration.json.
+constexpr const char* kOffsetsFile = "offsets.npz";
+
 /// Parameters of the registered body, body frame.
 struct BodyParameters {
   Eigen::VectorXd betas;
   Points3d pose;  ///< 3 x J axis-angle, root first
   Vec3d translation_m = Vec3d::Zero();
+  std::string offsets_file{};  ///< file beside registration.json that holds the vertex offsets; empty: none
 };
 
 struct RegisteredJoint {
@@ -73,12 +77,14 @@ struct Registration {
   std::optional<BodyParameters> parameters;  ///< none when failed before a fit
   std::vector<RegisteredJoint> joints;
   std::optional<SurfaceError> surface_error;
+  std::optional<SurfaceError> parametric_error;  ///< before vertex offsets were added; none without offsets
   Verdict verdict;
   Timing timing_ms;
   Settings settings;
 
   Points3d registered_vertices;  ///< 3 x V, scan frame and scan units; empty when failed
   Faces registered_faces;
+  Points3f offsets;  ///< 3 x V, m, rest frame, before skinning; empty without --detail vertex
   std::vector<float> vertex_error_mm;  ///< V, distance to the scan's surface; empty when failed
 };
 

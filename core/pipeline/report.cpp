@@ -1,7 +1,9 @@
 #include "pipeline/report.h"
 
 #include <cstdio>
+#include <span>
 
+#include "io/npz.h"
 #include "measure/verdict_features.h"
 
 namespace vitruvian {
@@ -18,9 +20,10 @@ std::string pooled_line(const char* title, const DistanceStatistics& s) {
   return text("  %-34s %7.2f %7.2f %7.2f %7.2f\n", title, s.mean_mm, s.median_mm, s.p95_mm, s.max_mm);
 }
 
-std::string error_table(const SurfaceError& error) {
+std::string error_table(const SurfaceError& error, const std::optional<SurfaceError>& parametric) {
   std::string out = "Error (mm)                              mean  median     p95     max\n";
   out += pooled_line("model to the scan's surface", error.surface_all);
+  if (parametric) out += pooled_line("  before vertex offsets", parametric->surface_all);
   out += pooled_line("model to matched scan points", error.all);
   out += pooled_line("scan to the model's surface", error.scan_to_model);
   out += "By segment, to the scan's surface   seen    mean  median     p95     max\n";
@@ -53,6 +56,13 @@ std::string errors_csv(const SurfaceError& error) {
   return out;
 }
 
+std::string offsets_npz(const Points3f& offsets) {
+  const NpzItem item{.name = "offsets",
+                     .shape = {static_cast<std::size_t>(offsets.cols()), 3},
+                     .floats = std::span(offsets.data(), static_cast<std::size_t>(offsets.size()))};
+  return to_npz(std::span(&item, 1));
+}
+
 std::string report_text(const Registration& r) {
   std::string out =
       "Scan     " + r.scan.file + text(", %ld vertices, %ld faces", r.scan.vertices, r.scan.faces);
@@ -64,7 +74,7 @@ std::string report_text(const Registration& r) {
          text(", %d vertices, %d betas\n", r.model.vertices, r.model.betas);
   out += "Verdict  " + to_string(r.verdict.status) + text(", confidence %.2f\n", r.verdict.confidence);
   for (const std::string& reason : r.verdict.reasons) out += "         - " + reason + "\n";
-  if (r.surface_error) out += error_table(*r.surface_error);
+  if (r.surface_error) out += error_table(*r.surface_error, r.parametric_error);
   const Timing& t = r.timing_ms;
   out += text(
       "Time (s) %.2f: read %.2f, align %.2f, project %.2f, detect %.2f, pose %.2f, fit %.2f, refine %.2f, "

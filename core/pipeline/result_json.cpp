@@ -130,6 +130,7 @@ ordered_json parameters_json(const std::optional<BodyParameters>& parameters) {
   result["betas"] = numbers(parameters->betas);
   result["pose"] = numbers(parameters->pose);
   result["translation_m"] = numbers(parameters->translation_m);
+  if (!parameters->offsets_file.empty()) result["offsets"] = parameters->offsets_file;
   return result;
 }
 
@@ -204,6 +205,9 @@ std::string registration_json(const Registration& registration, std::string_view
   document["joints"] = joint_rows(registration.joints);
   document["surface_error"] =
       registration.surface_error ? surface_error_json(*registration.surface_error) : ordered_json();
+  if (registration.surface_error && registration.parametric_error) {
+    document["surface_error"]["parametric"] = surface_error_json(*registration.parametric_error);
+  }
   document["verdict"] = {{"status", to_string(registration.verdict.status)},
                          {"confidence", rounded(registration.verdict.confidence, 1e4)},
                          {"reasons", registration.verdict.reasons}};

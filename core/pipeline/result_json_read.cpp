@@ -106,6 +106,7 @@ BodyParameters read_parameters(const JsonValue& value) {
   if (pose.size() == 0 || pose.size() % 3 != 0) value.at("pose").fail("three numbers a joint are expected");
   parameters.pose = Eigen::Map<const Points3d>(pose.data(), 3, pose.size() / 3);
   parameters.translation_m = value.at("translation_m").vector3();
+  if (value.has("offsets")) parameters.offsets_file = value.at("offsets").text();
   return parameters;
 }
 
@@ -187,7 +188,9 @@ Registration parse_registration(std::string_view text, const std::string& file_n
         {joint.at("name").text(), joint.at("body_m").vector3(), joint.at("scan").vector3()});
   }
   if (!document.at("surface_error").is_null()) {
-    registration.surface_error = read_surface_error(document.at("surface_error"));
+    const JsonValue error = document.at("surface_error");
+    registration.surface_error = read_surface_error(error);
+    if (error.has("parametric")) registration.parametric_error = read_surface_error(error.at("parametric"));
   }
   const JsonValue verdict = document.at("verdict");
   registration.verdict.status = read_status(verdict.at("status"));

@@ -98,8 +98,7 @@ TEST(Arguments, OptionsWithoutAFeatureAreNamed) {
                                              {"--keypoints", "f"},
                                              {"--regions", "f"},
                                              {"--crop", "f"},
-                                             {"--project", "f"},
-                                             {"--detail", "vertex"}}) {
+                                             {"--project", "f"}}) {
     const std::vector<std::string> named = registering(options).not_available;
     ASSERT_EQ(named.size(), 1u) << options[0];
     EXPECT_EQ(named[0].rfind(options[0], 0), 0u) << named[0];

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/cli/cli_fixture.h"
+#include "io/npz.h"
 #include "pipeline/result_json.h"
 
 namespace vitruvian {
@@ -40,6 +41,26 @@ TEST_F(RegisterCommand, OkScanGivesStatus0AndThreeFiles) {
   EXPECT_TRUE(said("read")) << "progress goes to stderr";
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("deep/out/body")), {}), 3)
       << "no temporary file";
+}
+
+TEST_F(RegisterCommand, VertexOffsetsAreWrittenBesideTheJson) {
+  Points3f given;
+  register_ = [&](const Scan& scan, const Settings& settings, const Execution&) {
+    EXPECT_EQ(settings.detail, DetailMode::vertex);
+    Registration r = pretended(scan, settings);
+    r.offsets = given = 0.001f * scan.vertices;
+    r.parameters->offsets_file = kOffsetsFile;
+    return r;
+  };
+  EXPECT_EQ(run({"register", write_scan("body.ply"), "--out", path("out"), "--detail", "vertex"}), 0);
+  const std::string file = read("out/body/offsets.npz");
+  const NumericArray offsets =
+      NpzFile(std::as_bytes(std::span(std::string_view(file))), "offsets.npz").array("offsets");
+  EXPECT_EQ(offsets.shape, (std::vector<std::size_t>{4, 3}));
+  for (int i = 0; i < 12; ++i) EXPECT_EQ(offsets.values[i], given(i % 3, i / 3)) << "vertex by vertex";
+  const json result = json::parse(read("out/body/registration.json"));
+  EXPECT_EQ(result["parameters"]["offsets"], "offsets.npz");
+  EXPECT_EQ(result["settings"]["detail"], "vertex");
 }
 
 TEST_F(RegisterCommand, FormatsAndStaleOutputs) {
@@ -116,7 +137,6 @@ TEST_F(RegisterCommand, WrongUsageGivesStatus2BeforeAnyWork) {
                                              {"register", "--out", path("out")},
                                              {"register", scan, "--out", path("out"), "--up", "w"},
                                              {"register", scan, "--out", path("out"), "--regions", "r.json"},
-                                             {"register", scan, "--out", path("out"), "--detail", "vertex"},
                                              {"register", scan, "--out", path("out"), "--method", "paper"},
                                              {"register", path(""), "--out", path("out")},
                                              {"measure", "r.json"},
@@ -128,8 +148,8 @@ TEST_F(RegisterCommand, WrongUsageGivesStatus2BeforeAnyWork) {
   }
   EXPECT_FALSE(opened);
   EXPECT_FALSE(exists("out"));
-  run({"register", scan, "--out", path("out"), "--detail", "vertex"});
-  EXPECT_TRUE(said("--detail vertex: not yet available")) << error();
+  run({"register", scan, "--out", path("out"), "--regions", "r.json"});
+  EXPECT_TRUE(said("--regions: not yet available")) << error();
 }
 
 TEST_F(RegisterCommand, UnusableModelGivesStatus2) {

@@ -54,6 +54,37 @@ TEST(RegistrationPipeline, RegistersWhatAnAllKnowingNetworkSees) {
   EXPECT_LT((*r.keypoints[4].position_m - r.joints[4].body_m).norm(), 0.05);
 }
 
+TEST(RegistrationPipeline, DetailAddsOffsetsAndJudgesTheBodyWithoutThem) {
+  BodyState truth = standing();
+  Settings settings = pca_settings();
+  // Too few shape components for this body: something is left for the offsets.
+  truth.betas.setConstant(0.6);
+  settings.betas = 2;
+  const Registration without = registered(truth, settings, Execution(2));
+  settings.detail = DetailMode::vertex;
+  const Registration with = registered(truth, settings, Execution(2));
+  EXPECT_EQ(without.offsets.cols(), 0);
+  EXPECT_FALSE(without.parametric_error);
+  EXPECT_EQ(without.timing_ms.detail, 0);
+  ASSERT_EQ(with.offsets.cols(), default_body().vertex_count());
+  EXPECT_EQ(with.parameters->offsets_file, "offsets.npz");
+  EXPECT_GT(with.timing_ms.detail, 0);
+  ASSERT_TRUE(with.parametric_error);
+  EXPECT_EQ(with.parametric_error->surface_all.mean_mm, without.surface_error->surface_all.mean_mm);
+  EXPECT_GT(without.surface_error->surface_all.mean_mm, 1.5);
+  EXPECT_LT(with.surface_error->surface_all.mean_mm, 1);
+  EXPECT_EQ(with.verdict.confidence, without.verdict.confidence);
+  EXPECT_EQ(with.parameters->pose, without.parameters->pose);
+  const Points3d body =
+      posed_vertices<double>(default_body(),
+                             BodyState::from_axis_angle(with.parameters->pose, with.parameters->betas,
+                                                        with.parameters->translation_m),
+                             with.offsets);
+  const Mat4d inverse = with.alignment.body_from_scan.inverse();
+  const Points3d rebuilt = (inverse.topLeftCorner<3, 3>() * body).colwise() + inverse.topRightCorner<3, 1>();
+  EXPECT_LT((rebuilt - with.registered_vertices).colwise().norm().maxCoeff(), 0.01);
+}
+
 TEST(RegistrationPipeline, GivesTheSameBytesAgainButForTimes) {
   const auto json = [] {
     Registration r = registered(standing(), pca_settings(), Execution(2));

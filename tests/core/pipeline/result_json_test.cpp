@@ -75,6 +75,21 @@ TEST(ResultJson, ValuesStandWhereTheyBelong) {
   EXPECT_EQ(j["settings"]["seed"], 4294967295u);
 }
 
+TEST(ResultJson, VertexOffsetsAddTheirFileAndTheErrorBefore) {
+  Registration r = sample_registration();
+  r.parameters->offsets_file = kOffsetsFile;
+  r.parametric_error = r.surface_error;
+  r.parametric_error->surface_all.mean_mm = 7.25;
+  const ordered_json j = written(r);
+  EXPECT_EQ(j["parameters"]["offsets"], "offsets.npz");
+  EXPECT_EQ(keys(j["surface_error"]["parametric"]),
+            (Keys{"segments", "all", "surface_segments", "surface_all", "scan_to_model"}));
+  EXPECT_EQ(j["surface_error"]["parametric"]["surface_all"]["mean_mm"], 7.25);
+  EXPECT_EQ(j["surface_error"]["surface_all"]["mean_mm"], 1.5);
+  const std::string text = registration_json(r, "1", JsonStyle::pretty);
+  EXPECT_EQ(registration_json(parse_registration(text, "r.json"), "1", JsonStyle::pretty), text);
+}
+
 TEST(ResultJson, StylesHoldTheSameDocument) {
   const Registration r = sample_registration();
   const std::string compact = registration_json(r, "1", JsonStyle::compact),
