@@ -187,23 +187,8 @@ Arguments parse_arguments(const std::vector<std::string>& arguments) {
 
   CLI::App& measure_command =
       *app.add_subcommand("measure", "lengths, girths, volumes and sections of a registration");
-  std::vector<std::string> ignored;
-  measure_command.add_option("REGISTRATION", ignored, "a registration.json")
-      ->required()
-      ->type_name("")
-      ->expected(1);
-  for (const auto& [name, type] :
-       std::vector<std::pair<const char*, const char*>>{{"--out", "DIR"},
-                                                        {"--model", "FILE"},
-                                                        {"--scan", "FILE"},
-                                                        {"--section", "SEGMENT:t=F|SEGMENT:d=MM[@distal]"},
-                                                        {"--profile", "SEGMENT:N"}}) {
-    measure_command
-        .add_option_function<std::vector<std::string>>(name, [](const std::vector<std::string>&) {})
-        ->type_name(type)
-        ->expected(1)
-        ->take_all();
-  }
+  MeasureArguments measuring;
+  add_measure_options(measure_command, measuring);
 
   EvaluateArguments evaluating;
   CLI::App& evaluate_command =
@@ -249,7 +234,7 @@ Arguments parse_arguments(const std::vector<std::string>& arguments) {
     settle_register(register_command, pending, registering);
     return registering;
   }
-  if (measure_command.parsed()) return MeasureArguments{};
+  if (measure_command.parsed()) return measuring;
   if (evaluate_command.parsed()) return evaluating;
   if (info_command.parsed()) return informing;
   throw Error(ErrorCode::usage, "a command is missing\nRun: vitruvian help");

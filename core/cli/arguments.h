@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "cli/measure_arguments.h"
 #include "pipeline/settings.h"
 
 namespace vitruvian {
@@ -35,9 +36,6 @@ struct EvaluateArguments {
 struct ModelInfoArguments {
   std::string file;
 };
-
-/// `vitruvian measure`: its options are known, the command has no implementation yet.
-struct MeasureArguments {};
 
 /// A text the user asked for: help or version.
 struct PrintArguments {

@@ -42,8 +42,13 @@ int main(int count, char** values) {
   catch_interrupts();
   const std::vector<std::string> arguments(values + 1, values + count);
   const char* data = std::getenv("VITRUVIAN_DATA");
-  const vitruvian::CliContext context{
-      std::cout, std::cerr, isatty(STDERR_FILENO) == 1, interrupt_switch,
-      vitruvian::native_register(vitruvian::data_folders(program_folder(values[0]), data ? data : ""))};
+  const std::vector<std::string> folders =
+      vitruvian::data_folders(program_folder(values[0]), data ? data : "");
+  const vitruvian::CliContext context{std::cout,
+                                      std::cerr,
+                                      isatty(STDERR_FILENO) == 1,
+                                      interrupt_switch,
+                                      vitruvian::native_register(folders),
+                                      vitruvian::native_body(folders)};
   return static_cast<int>(vitruvian::run_cli(arguments, context));
 }

@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "cli/evaluate_command.h"
+#include "cli/measure_command.h"
 #include "cli/model_command.h"
 #include "cli/register_command.h"
 
@@ -17,9 +18,7 @@ struct Dispatch {
     return ExitStatus::ok;
   }
   ExitStatus operator()(const RegisterArguments& arguments) const { return run_register(arguments, context); }
-  ExitStatus operator()(const MeasureArguments&) const {
-    throw Error(ErrorCode::not_available, "the command measure is not yet available in this version");
-  }
+  ExitStatus operator()(const MeasureArguments& arguments) const { return run_measure(arguments, context); }
   ExitStatus operator()(const EvaluateArguments& arguments) const { return run_evaluate(arguments, context); }
   ExitStatus operator()(const ModelInfoArguments& arguments) const {
     return run_model_info(arguments, context);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/execution.h"
+#include "body/model.h"
 #include "cli/arguments.h"
 #include "io/scan.h"
 #include "pipeline/registration.h"
@@ -29,6 +30,10 @@ using RegisterFunction = std::function<Registration(Scan scan, const Settings& s
 /// @throws Error when they cannot be used.
 using RegisterFactory = std::function<RegisterFunction(const RegisterArguments& arguments)>;
 
+/// Loads a body model; an empty name means the default body.
+/// @throws Error when it cannot be used.
+using BodyOpener = std::function<BodyModel(const std::string& model_file)>;
+
 /// What the command line is given by the process that runs it.
 struct CliContext {
   std::ostream& out;
@@ -36,6 +41,7 @@ struct CliContext {
   bool error_is_terminal;
   const Execution& interrupt;  ///< its cancel() ends the run; may be called from a signal handler
   RegisterFactory open_register;
+  BodyOpener open_body;
 };
 
 /// Runs one command and returns its exit status. Writes to the two streams and below --out; throws nothing.

@@ -11,11 +11,14 @@
 namespace vitruvian {
 namespace {
 
+BodyModel load_body(const std::string& model_file, const std::vector<std::string>& folders) {
+  const std::string path = model_file.empty() ? find_data_file(folders, "body.vbm") : model_file;
+  return read_body_model(FileBytes(path).bytes(), path);
+}
+
 Models load_models(const RegisterArguments& arguments, const std::vector<std::string>& folders) {
   Models models;
-  const std::string body =
-      arguments.model_file.empty() ? find_data_file(folders, "body.vbm") : arguments.model_file;
-  models.body = read_body_model(FileBytes(body).bytes(), body);
+  models.body = load_body(arguments.model_file, folders);
   const std::string prior = find_data_file(folders, "pose_prior.vpp");
   models.prior = read_pose_prior(FileBytes(prior).bytes(), prior);
   const std::string landmarks = find_data_file(folders, "landmarks.json");
@@ -26,6 +29,12 @@ Models load_models(const RegisterArguments& arguments, const std::vector<std::st
 }
 
 }  // namespace
+
+BodyOpener native_body(std::vector<std::string> folders) {
+  return [folders = std::move(folders)](const std::string& model_file) {
+    return load_body(model_file, folders);
+  };
+}
 
 RegisterFactory native_register(std::vector<std::string> folders) {
   return [folders = std::move(folders)](const RegisterArguments& arguments) -> RegisterFunction {

@@ -11,4 +11,7 @@ namespace vitruvian {
 /// @param folders  searched for models and networks, see data_folders().
 RegisterFactory native_register(std::vector<std::string> folders);
 
+/// Body models of this program: the default body from `folders`, or a given file.
+BodyOpener native_body(std::vector<std::string> folders);
+
 }  // namespace vitruvian

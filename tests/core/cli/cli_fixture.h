@@ -64,8 +64,9 @@ class CliTest : public testing::Test {
   int run(const std::vector<std::string>& arguments, bool terminal = false) {
     out_.str("");
     error_.str("");
-    const CliContext context{out_, error_, terminal, interrupt_,
-                             [this](const RegisterArguments& a) { return open_(a); }};
+    const CliContext context{
+        out_,      error_, terminal, interrupt_, [this](const RegisterArguments& a) { return open_(a); },
+        open_body_};
     return static_cast<int>(run_cli(arguments, context));
   }
   std::string out() const { return out_.str(); }
@@ -81,6 +82,7 @@ class CliTest : public testing::Test {
       return register_(scan, settings, execution);
     };
   };
+  BodyOpener open_body_;
   Execution interrupt_{1};
 
  private:
