@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "anthropometry/dimension_specs.h"
+#include "anthropometry/landmarks.h"
+#include "geometry/plane_section.h"
+
+namespace vitruvian {
+
+enum class Posture { standard, scanned };
+
+/// A body dimension; ids are unique but for the posture.
+struct Dimension {
+  std::string id, name, standard, definition;
+  std::string side;  ///< "left", "right" or empty
+  Posture posture = Posture::standard;
+  double value_m = 0;
+  std::optional<double> uncertainty_m;  ///< standard uncertainty; none where the fit's error is unknown
+  /// What was measured along: corners of the tape or line, body frame of the figure that it was taken on.
+  /// Empty for heights and extents.
+  std::vector<Vec3d> course;
+};
+
+/// Mean distance in metres between the registered body and the scan, a segment; none where it was not
+/// observed.
+using FitErrors = std::array<std::optional<double>, kSegmentCount>;
+
+/// All dimensions that can be taken on this body.
+/// @param standing  the body in standard_posture(); every dimension is taken on it.
+/// @param scanned   the same body in the pose of the scan: tapes and lines are laid over the same points of
+/// its
+///                  skin. Heights, extents and levels have no meaning there and are left out.
+std::vector<Dimension> measure_dimensions(const Figure& standing, const Figure& scanned,
+                                          const LandmarkSet& landmarks, const FitErrors& errors);
+
+}  // namespace vitruvian
