@@ -1,7 +1,9 @@
 #include "cli/measure_command.h"
 
+#include <Eigen/LU>
 #include <filesystem>
 
+#include "anthropometry/posture.h"
 #include "base/sha256.h"
 #include "cli/paths.h"
 #include "io/file.h"
@@ -21,6 +23,45 @@ void check_model(const Registration& registration, const BodyModel& body, const 
               arguments.registration_file + ": was made with the model " + registration.model.name +
                   " (sha256 " + registration.model.sha256.substr(0, 12) + "...), this one is " + body.name +
                   " (" + body.sha256.substr(0, 12) + "...): give the model it was made with, --model FILE");
+}
+
+/// The rows of surface_segments by segment.
+std::array<const SegmentError*, kSegmentCount> error_rows(const Registration& registration) {
+  std::array<const SegmentError*, kSegmentCount> rows{};
+  if (!registration.surface_error) return rows;
+  for (const SegmentError& row : registration.surface_error->surface_segments) {
+    const int segment = segment_named(row.segment);
+    if (segment >= 0) rows[static_cast<std::size_t>(segment)] = &row;
+  }
+  return rows;
+}
+
+FitErrors fit_errors(const Registration& registration) {
+  const auto rows = error_rows(registration);
+  FitErrors errors;
+  for (std::size_t s = 0; s < rows.size(); ++s) {
+    if (rows[s] && rows[s]->statistics) errors[s] = 1e-3 * rows[s]->statistics->mean_mm;
+  }
+  return errors;
+}
+
+std::vector<LandmarkReport> landmark_reports(const Registration& registration, const Figure& figure,
+                                             const LandmarkSet& landmarks) {
+  const auto rows = error_rows(registration);
+  const Mat4d scan_from_body = registration.alignment.body_from_scan.inverse();
+  std::vector<LandmarkReport> reports;
+  for (const SurfaceLandmark& landmark : landmarks.all()) {
+    LandmarkReport report{std::string(landmark.name), landmark.position(figure.vertices), Vec3d::Zero(),
+                          std::nullopt};
+    report.scan =
+        scan_from_body.topLeftCorner<3, 3>() * report.body_m + scan_from_body.topRightCorner<3, 1>();
+    if (const SegmentError* row = rows[static_cast<std::size_t>(landmark.segment)]) {
+      report.confidence =
+          row->statistics ? landmark_confidence(row->observed, 1e-3 * row->statistics->mean_mm) : 0.0;
+    }
+    reports.push_back(std::move(report));
+  }
+  return reports;
 }
 
 std::vector<SectionResult> wanted_sections(const Figure& figure, const MeasureArguments& arguments) {
@@ -63,6 +104,10 @@ ExitStatus run_measure(const MeasureArguments& arguments, const CliContext& cont
   const Figure figure(
       measured, BodyState::from_axis_angle(parameters.pose, parameters.betas, parameters.translation_m));
   report.body = measure_body(figure);
+  const LandmarkSet landmarks(measured);
+  const Figure standing(measured, standard_posture(measured, parameters.betas));
+  report.dimensions = measure_dimensions(standing, figure, landmarks, fit_errors(registration));
+  report.landmarks = landmark_reports(registration, figure, landmarks);
   report.sections = wanted_sections(figure, arguments);
   context.interrupt.check();
 

@@ -52,6 +52,29 @@ ordered_json segment_json(const BodyMeasures& body, int s) {
   return row;
 }
 
+ordered_json dimension_json(const Dimension& dimension) {
+  ordered_json row;
+  row["id"] = dimension.id;
+  row["name"] = dimension.name;
+  row["standard"] = dimension.standard;
+  row["definition"] = dimension.definition;
+  row["side"] = dimension.side;
+  row["value_mm"] = millimetres(dimension.value_m);
+  row["uncertainty_mm"] =
+      dimension.uncertainty_m ? ordered_json(millimetres(*dimension.uncertainty_m)) : ordered_json();
+  row["posture"] = dimension.posture == Posture::standard ? "standard" : "scanned";
+  return row;
+}
+
+ordered_json landmark_json(const LandmarkReport& landmark) {
+  ordered_json row;
+  row["name"] = landmark.name;
+  row["body_m"] = row_of(landmark.body_m);
+  row["scan"] = {landmark.scan[0], landmark.scan[1], landmark.scan[2]};
+  row["confidence"] = landmark.confidence ? ordered_json(rounded(*landmark.confidence, 1e4)) : ordered_json();
+  return row;
+}
+
 ordered_json section_json(const SectionResult& section) {
   ordered_json row;
   row["segment"] = kSegmentNames[static_cast<std::size_t>(section.segment)];
@@ -92,12 +115,23 @@ std::string spaced(std::string text) {
   return text;
 }
 
-void add_csv(std::string& out, const std::string& id, const std::string& name, const std::string& side,
-             double value, int decimals, const std::string& unit) {
-  out += id + "," + name + ",," + side + "," + number(value, decimals) + "," + unit + ",\n";
+std::string quoted(const std::string& text) {
+  return text.find(',') == std::string::npos ? text : '"' + text + '"';
+}
+
+/// One row; no text holds a quote.
+void add_csv(std::string& out, const std::string& id, const std::string& name, const std::string& standard,
+             const std::string& side, const std::string& value, const std::string& unit,
+             const std::string& uncertainty = "") {
+  out += id + "," + quoted(name) + "," + quoted(standard) + "," + side + "," + value + "," + unit + "," +
+         uncertainty + "\n";
 }
 
 }  // namespace
+
+double landmark_confidence(double observed, double mean_error_m) {
+  return observed / (1 + mean_error_m / 0.010);
+}
 
 std::string measurements_json(const MeasurementReport& report, JsonStyle style) {
   ordered_json document;
@@ -109,6 +143,11 @@ std::string measurements_json(const MeasurementReport& report, JsonStyle style) 
   document["segments"] = ordered_json::array();
   for (int s = 0; s < kSegmentCount; ++s) document["segments"].push_back(segment_json(report.body, s));
   document["dimensions"] = ordered_json::array();
+  for (const Dimension& dimension : report.dimensions)
+    document["dimensions"].push_back(dimension_json(dimension));
+  document["landmarks"] = ordered_json::array();
+  for (const LandmarkReport& landmark : report.landmarks)
+    document["landmarks"].push_back(landmark_json(landmark));
   document["sections"] = ordered_json::array();
   for (const SectionResult& section : report.sections) document["sections"].push_back(section_json(section));
   return json_text(document, style);
@@ -116,20 +155,26 @@ std::string measurements_json(const MeasurementReport& report, JsonStyle style) 
 
 std::string measurements_csv(const MeasurementReport& report) {
   std::string out = "id,name,standard,side,value,unit,uncertainty\n";
-  add_csv(out, "body_volume", "body volume", "", 1e6 * report.body.volume_m3, 1, "cm3");
-  add_csv(out, "body_area", "body surface area", "", 1e4 * report.body.area_m2, 1, "cm2");
-  add_csv(out, "body_mass", "body mass with segment densities", "", report.body.mass_kg, 3, "kg");
+  for (const Dimension& d : report.dimensions) {
+    const bool scanned = d.posture == Posture::scanned;
+    add_csv(out, d.id + (scanned ? "_as_scanned" : ""), d.name + (scanned ? " (as scanned)" : ""), d.standard,
+            d.side, number(1e3 * d.value_m, 2), "mm",
+            d.uncertainty_m ? number(1e3 * *d.uncertainty_m, 2) : "");
+  }
+  add_csv(out, "body_volume", "body volume", "", "", number(1e6 * report.body.volume_m3, 1), "cm3");
+  add_csv(out, "body_area", "body surface area", "", "", number(1e4 * report.body.area_m2, 1), "cm2");
+  add_csv(out, "body_mass", "body mass with segment densities", "", "", number(report.body.mass_kg, 3), "kg");
   for (int s = 0; s < kSegmentCount; ++s) {
     const auto i = static_cast<std::size_t>(s);
     const auto [segment, side] = split_side(kSegmentNames[i]);
     const SegmentMeasure& m = report.body.segments[i];
-    const std::string id = std::string(kSegmentNames[i]), name = spaced(segment);
-    add_csv(out, id + "_length", name + " length", side, 1e3 * m.length_m, 2, "mm");
-    add_csv(out, id + "_volume", name + " volume", side, 1e6 * m.volume_m3, 2, "cm3");
-    add_csv(out, id + "_volume_hull", name + " hull volume", side, 1e6 * report.body.published[i].volume_m3,
-            2, "cm3");
-    add_csv(out, id + "_area", name + " surface area", side, 1e4 * m.area_m2, 2, "cm2");
-    add_csv(out, id + "_mass", name + " mass", side, m.mass_kg, 4, "kg");
+    const std::string id = std::string(kSegmentNames[i]) + "_segment", name = spaced(segment) + " segment";
+    add_csv(out, id + "_length", name + " length", "", side, number(1e3 * m.length_m, 2), "mm");
+    add_csv(out, id + "_volume", name + " volume", "", side, number(1e6 * m.volume_m3, 2), "cm3");
+    add_csv(out, id + "_volume_hull", name + " hull volume", "", side,
+            number(1e6 * report.body.published[i].volume_m3, 2), "cm3");
+    add_csv(out, id + "_area", name + " surface area", "", side, number(1e4 * m.area_m2, 2), "cm2");
+    add_csv(out, id + "_mass", name + " mass", "", side, number(m.mass_kg, 4), "kg");
   }
   return out;
 }
