@@ -140,8 +140,10 @@ constexpr std::array kSpecs = {
     across(K::limb_narrowest, "neck_girth", "neck girth", kBoth, false, R::torso, "neck", "", "", 0.3, 1.0,
            "smallest tape across the neck's axis between its joints, clear of the shoulders"),
     DimensionSpec{"neck_base_girth", "neck base girth", kIso8559,
-                  "tape over the notch of the breastbone and the side neck points, level from left to right", false,
-                  K::tilted_girth, "suprasternale", "left_neck_shoulder_point", "", R::torso, "", 0, 0},
+                  "taut tape over the side neck points, in front over the notch of the breastbone, behind "
+                  "over the cervicale",
+                  false, K::neck_base, "left_neck_shoulder_point", "right_neck_shoulder_point",
+                  "suprasternale", R::torso, "", 0, 0},
     level(K::level_girth, "upper_chest_girth", "upper chest girth", kIso8559, R::torso,
           "left_axilla_anterior", "right_axilla_anterior",
           "horizontal tape round the torso at the front axillary folds, arms left out"),

@@ -166,6 +166,11 @@ class Taker {
                         axis.body_from_segment.col(2));
   }
 
+  std::optional<Tape> arc_over(const Vec3d& over) {
+    const Vec3d a = place(spec_->a), b = place(spec_->b);
+    return tapes_.arc({over, (b - a).cross(over - a).normalized()}, region(), wanted_, a, b, over);
+  }
+
   int segment() const { return segment_named(sided(spec_->segment, side_)); }
 
   /// The place in [low, high] whose tape is best, coarse then fine. `better` compares two tapes.
@@ -223,9 +228,15 @@ class Taker {
         const Vec3d over = spec_->c.empty() ? Vec3d((a + b) / 2) : place(spec_->c);
         return tapes_.arc({a, Vec3d::UnitX()}, region(), wanted_, a, b, over);
       }
-      case DimensionKind::coronal_arc: {
-        const Vec3d a = place(spec_->a), b = place(spec_->b), c = place(spec_->c);
-        return tapes_.arc({c, (b - a).cross(c - a).normalized()}, region(), wanted_, a, b, c);
+      case DimensionKind::coronal_arc:
+        return arc_over(place(spec_->c));
+      case DimensionKind::neck_base: {
+        std::optional<Tape> front = arc_over(place(spec_->c)), back = arc_over(place("cervicale"));
+        if (!front || !back) return std::nullopt;
+        front->corners.insert(front->corners.end(), back->corners.rbegin(), back->corners.rend());
+        front->closed = true;
+        front->length = front->length_on(figure_);
+        return front;
       }
       default:
         return std::nullopt;
