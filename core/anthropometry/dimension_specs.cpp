@@ -139,11 +139,6 @@ constexpr std::array kSpecs = {
                   "left_tragion", "right_tragion", "top_of_head", R::torso, "head", 0, 0},
     across(K::limb_narrowest, "neck_girth", "neck girth", kBoth, false, R::torso, "neck", "", "", 0.3, 1.0,
            "smallest tape across the neck's axis between its joints, clear of the shoulders"),
-    DimensionSpec{"neck_base_girth", "neck base girth", kIso8559,
-                  "taut tape over the side neck points, in front over the notch of the breastbone, behind "
-                  "over the cervicale",
-                  false, K::neck_base, "left_neck_shoulder_point", "right_neck_shoulder_point",
-                  "suprasternale", R::torso, "", 0, 0},
     level(K::level_girth, "upper_chest_girth", "upper chest girth", kIso8559, R::torso,
           "left_axilla_anterior", "right_axilla_anterior",
           "horizontal tape round the torso at the front axillary folds, arms left out"),

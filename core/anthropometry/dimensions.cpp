@@ -230,14 +230,6 @@ class Taker {
       }
       case DimensionKind::coronal_arc:
         return arc_over(place(spec_->c));
-      case DimensionKind::neck_base: {
-        std::optional<Tape> front = arc_over(place(spec_->c)), back = arc_over(place("cervicale"));
-        if (!front || !back) return std::nullopt;
-        front->corners.insert(front->corners.end(), back->corners.rbegin(), back->corners.rend());
-        front->closed = true;
-        front->length = front->length_on(figure_);
-        return front;
-      }
       default:
         return std::nullopt;
     }
