@@ -100,11 +100,16 @@ std::string to_npy(const NpzItem& item) {
     count *= extent;
     shape += std::to_string(extent) + ",";
   }
+  const bool is_text = !item.text.empty();
   const bool is_float = item.doubles.empty() && item.integers.empty();
-  const std::size_t given = item.floats.size() + item.doubles.size() + item.integers.size();
+  const std::size_t given =
+      item.floats.size() + item.doubles.size() + item.integers.size() + (is_text ? 1 : 0);
   if (given != count)
     throw Error(ErrorCode::internal, "array to write: " + item.name + " does not have the size of its shape");
-  const char* type = is_float ? "<f4" : item.integers.empty() ? "<f8" : "<i4";
+  const std::string type = is_text                 ? "<U" + std::to_string(item.text.size())
+                           : is_float              ? "<f4"
+                           : item.integers.empty() ? "<f8"
+                                                   : "<i4";
   std::string header =
       std::string("{'descr': '") + type + "', 'fortran_order': False, 'shape': (" + shape + "), }";
   // NumPy aligns the data to 64 bytes; the header ends with a newline.
@@ -119,6 +124,7 @@ std::string to_npy(const NpzItem& item) {
   add(item.floats);
   add(item.doubles);
   add(item.integers);
+  for (const char c : item.text) append(out, static_cast<std::uint32_t>(static_cast<unsigned char>(c)));
   return out;
 }
 

@@ -51,14 +51,15 @@ class NpzFile {
   std::vector<Member> members_;
 };
 
-/// One array to write; refers to the caller's data. Exactly one of the three spans has the product of `shape`
-/// values.
+/// One array to write; refers to the caller's data. Exactly one of the spans has the product of `shape`
+/// values, or there is one piece of text.
 struct NpzItem {
   std::string name;
   std::vector<std::size_t> shape;
   std::span<const float> floats = {};
   std::span<const double> doubles = {};
   std::span<const std::int32_t> integers = {};
+  std::string_view text = {};  ///< ASCII, not empty; `shape` is empty then
 };
 
 /// The bytes of a .npz file (stored, no time stamps: equal content gives equal bytes). numpy.load() reads it.
