@@ -105,6 +105,14 @@ void add_measure_options(CLI::App& command, MeasureArguments& a) {
       ->type_name("SEGMENT:N")
       ->expected(1)
       ->take_all();
+  command
+      .add_option(
+          "--export", a.exports,
+          "more files into DIR, separated by commas: glb (with skeleton), npz (AMASS), smpl, trc (OpenSim), "
+          "landmarks (CSV), ply and obj (coloured by segment and error), html (report)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"glb", "npz", "smpl", "trc", "landmarks", "ply", "obj", "html"}).description(""))
+      ->type_name("FORMAT,...");
 }
 
 }  // namespace vitruvian

@@ -25,6 +25,7 @@ struct MeasureArguments {
   std::string scan_file;   ///< empty: none
   std::vector<SectionRequest> sections;
   std::vector<ProfileRequest> profiles;
+  std::vector<std::string> exports;  ///< formats, see export_files()
 };
 
 /// SEGMENT:t=F, SEGMENT:d=MM or SEGMENT:d=MM@distal (also @proximal).

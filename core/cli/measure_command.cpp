@@ -2,12 +2,16 @@
 
 #include <Eigen/LU>
 #include <filesystem>
+#include <optional>
 
 #include "anthropometry/posture.h"
 #include "base/sha256.h"
+#include "cli/measure_exports.h"
 #include "cli/paths.h"
+#include "geometry/mesh.h"
 #include "io/file.h"
 #include "pipeline/measurements_json.h"
+#include "pipeline/prepared_scan.h"
 #include "pipeline/result_json.h"
 
 namespace vitruvian {
@@ -45,8 +49,35 @@ FitErrors fit_errors(const Registration& registration) {
   return errors;
 }
 
+/// From the very vertices that the landmark lies between.
+double local_confidence(const SurfaceLandmark& landmark, const SurfaceMeasurement& surface) {
+  double observed = 0, error = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto v = static_cast<std::size_t>(landmark.vertex[k]);
+    observed += landmark.weight[static_cast<Index>(k)] * surface.observed[v];
+    error += landmark.weight[static_cast<Index>(k)] * surface.surface_distance_m[v];
+  }
+  return landmark_confidence(observed, error);
+}
+
+/// Distances between the registered body and its scan, vertex by vertex.
+SurfaceMeasurement compare_with_scan(const MeasureArguments& arguments, const Registration& registration,
+                                     const Figure& figure, const Execution& execution) {
+  Scan scan = read_scan_file(arguments.scan_file, execution);
+  if (scan.sha256 != registration.scan.sha256) {
+    throw Error(ErrorCode::usage, arguments.scan_file + ": is not the scan that was registered (" +
+                                      registration.scan.file + "): its sha256 differs");
+  }
+  const PreparedScan prepared(std::move(scan), execution);
+  const PlacedScan placed(prepared, registration.alignment.body_from_scan, execution);
+  const BodyModel& body = figure.model->body();
+  const Points3f vertices = figure.vertices.cast<float>(), normals = vertex_normals(vertices, body.faces);
+  return measure_surface({vertices, normals, body.faces, body.segment}, placed.surface(), execution);
+}
+
 std::vector<LandmarkReport> landmark_reports(const Registration& registration, const Figure& figure,
-                                             const LandmarkSet& landmarks) {
+                                             const LandmarkSet& landmarks,
+                                             const SurfaceMeasurement* surface) {
   const auto rows = error_rows(registration);
   const Mat4d scan_from_body = registration.alignment.body_from_scan.inverse();
   std::vector<LandmarkReport> reports;
@@ -55,7 +86,9 @@ std::vector<LandmarkReport> landmark_reports(const Registration& registration, c
                           std::nullopt};
     report.scan =
         scan_from_body.topLeftCorner<3, 3>() * report.body_m + scan_from_body.topRightCorner<3, 1>();
-    if (const SegmentError* row = rows[static_cast<std::size_t>(landmark.segment)]) {
+    if (surface) {
+      report.confidence = local_confidence(landmark, *surface);
+    } else if (const SegmentError* row = rows[static_cast<std::size_t>(landmark.segment)]) {
       report.confidence =
           row->statistics ? landmark_confidence(row->observed, 1e-3 * row->statistics->mean_mm) : 0.0;
     }
@@ -77,8 +110,8 @@ std::vector<SectionResult> wanted_sections(const Figure& figure, const MeasureAr
 }  // namespace
 
 ExitStatus run_measure(const MeasureArguments& arguments, const CliContext& context) {
-  if (!arguments.scan_file.empty()) {
-    throw Error(ErrorCode::not_available, "--scan: not yet available in this version");
+  if (!arguments.exports.empty() && arguments.out.empty()) {
+    throw Error(ErrorCode::usage, "--export needs --out DIR\nRun: vitruvian help measure");
   }
   Registration registration;
   MeasurementReport report;
@@ -101,13 +134,24 @@ ExitStatus run_measure(const MeasureArguments& arguments, const CliContext& cont
 
   const BodyParameters& parameters = *registration.parameters;
   const MeasuredModel measured(body);
-  const Figure figure(
-      measured, BodyState::from_axis_angle(parameters.pose, parameters.betas, parameters.translation_m));
+  const BodyState state =
+      BodyState::from_axis_angle(parameters.pose, parameters.betas, parameters.translation_m);
+  const Figure figure(measured, state);
+  std::optional<SurfaceMeasurement> surface;
+  if (!arguments.scan_file.empty()) {
+    try {
+      surface = compare_with_scan(arguments, registration, figure, context.interrupt);
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::usage || error.code() == ErrorCode::cancelled) throw;
+      context.error << "vitruvian: " << error.what() << "\n";
+      return ExitStatus::unreadable;
+    }
+  }
   report.body = measure_body(figure);
   const LandmarkSet landmarks(measured);
   const Figure standing(measured, standard_posture(measured, parameters.betas));
   report.dimensions = measure_dimensions(standing, figure, landmarks, fit_errors(registration));
-  report.landmarks = landmark_reports(registration, figure, landmarks);
+  report.landmarks = landmark_reports(registration, figure, landmarks, surface ? &*surface : nullptr);
   report.sections = wanted_sections(figure, arguments);
   context.interrupt.check();
 
@@ -120,6 +164,13 @@ ExitStatus run_measure(const MeasureArguments& arguments, const CliContext& cont
   const auto path = [&](const char* name) { return (std::filesystem::path(arguments.out) / name).string(); };
   write_file(path("measurements.csv"), measurements_csv(report));
   write_file(path("measurements.json"), json);
+  const MeasuredRegistration everything{registration, report, figure,
+                                        standing,     state,  surface ? &*surface : nullptr};
+  for (const std::string& format : arguments.exports) {
+    for (const ExportedFile& file : export_files(format, everything))
+      write_file(path(file.name.c_str()), file.content);
+    context.interrupt.check();
+  }
   context.out << "Written  " << printable(arguments.out) << "\n";
   return ExitStatus::ok;
 }

@@ -1,0 +1,140 @@
+#include "cli/measure_exports.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "exports/html_report.h"
+#include "exports/motion_files.h"
+#include "exports/skinned_glb.h"
+#include "io/mesh_writer.h"
+
+namespace vitruvian {
+namespace {
+
+/// Red at this distance, millimetres.
+constexpr double kWorstColour = 20;
+
+std::string fixed(double value, int decimals) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
+  return buffer;
+}
+
+/// Clearly different neighbours: hues a golden angle apart.
+std::array<std::uint8_t, 3> segment_colour(int segment) {
+  const double hue = std::fmod(segment * 0.61803398875, 1.0) * 6;
+  std::array<std::uint8_t, 3> colour{};
+  for (int k = 0; k < 3; ++k) {
+    const double distance = std::abs(std::fmod(hue - 2 * k + 9, 6.0) - 3);
+    colour[static_cast<std::size_t>(k)] =
+        static_cast<std::uint8_t>(70 + 170 * std::clamp(2 - distance, 0.0, 1.0));
+  }
+  return colour;
+}
+
+/// Blue over white to red.
+std::array<std::uint8_t, 3> error_colour(double mm) {
+  const double t = std::clamp(mm / kWorstColour, 0.0, 1.0), low = std::min(1.0, 2 * t),
+               high = std::max(0.0, 2 * t - 1);
+  const auto byte = [](double value) { return static_cast<std::uint8_t>(std::lround(255 * value)); };
+  return {byte(0.2 + 0.8 * low), byte(0.35 + 0.6 * low - 0.8 * high), byte(0.8 + 0.15 * low - 0.8 * high)};
+}
+
+ExportedBody exported_body(const MeasuredRegistration& m) {
+  ExportedBody body{m.scanned.model->body(),
+                    m.state,
+                    m.registration.model.gender,
+                    m.registration.alignment.body_from_scan,
+                    {},
+                    0,
+                    m.report.body.mass_kg};
+  body.stature_m = m.standing.vertices.row(1).maxCoeff() - m.standing.vertices.row(1).minCoeff();
+  for (const LandmarkReport& landmark : m.report.landmarks)
+    body.landmarks.push_back({landmark.name, landmark.body_m});
+  return body;
+}
+
+/// segments and, with a scan, errors; as PLY with the value beside the colour, or as OBJ.
+std::vector<ExportedFile> coloured_meshes(const MeasuredRegistration& m, bool ply) {
+  const BodyModel& body = m.scanned.model->body();
+  const Mat4d scan_from_body = m.registration.alignment.body_from_scan.inverse();
+  const Points3d vertices = (scan_from_body.topLeftCorner<3, 3>() * m.scanned.vertices).colwise() +
+                            scan_from_body.topRightCorner<3, 1>();
+  std::vector<ExportedFile> files;
+  const auto add = [&](const std::string& name, const std::string& value_name, const auto& value,
+                       const auto& colour) {
+    std::vector<std::uint8_t> colours;
+    std::vector<float> values;
+    for (int v = 0; v < body.vertex_count(); ++v) {
+      values.push_back(static_cast<float>(value(static_cast<std::size_t>(v))));
+      for (const std::uint8_t c : colour(values.back())) colours.push_back(c);
+    }
+    MeshView mesh{vertices, body.faces, colours, values, value_name};
+    files.push_back(ply ? ExportedFile{name + ".ply", to_ply(mesh)}
+                        : ExportedFile{name + ".obj", to_obj(mesh)});
+  };
+  add(
+      "segments", "segment", [&](std::size_t v) { return body.segment[v]; },
+      [](float value) { return segment_colour(static_cast<int>(value)); });
+  if (m.surface) {
+    add(
+        "errors", "error_mm", [&](std::size_t v) { return 1e3 * m.surface->surface_distance_m[v]; },
+        [](float value) { return error_colour(value); });
+  }
+  return files;
+}
+
+std::string html_report(const MeasuredRegistration& m) {
+  const BodyModel& body = m.standing.model->body();
+  ReportContent content{"Measurements of " + m.registration.scan.file,
+                        "Verdict: " + to_string(m.registration.verdict.status) + ", confidence " +
+                            fixed(m.registration.verdict.confidence, 2),
+                        m.registration.verdict.reasons,
+                        {},
+                        {},
+                        m.standing.vertices,
+                        body.faces,
+                        {}};
+  content.facts.push_back("body volume " + fixed(1e3 * m.report.body.volume_m3, 2) + " l, surface " +
+                          fixed(m.report.body.area_m2, 3) + " m², mass with published segment densities " +
+                          fixed(m.report.body.mass_kg, 1) + " kg");
+  content.facts.push_back(
+      "drawn and measured standing: upright, ankles 200 mm apart, arms 20 degrees from the vertical");
+  for (const Dimension& d : m.report.dimensions) {
+    if (d.posture != Posture::standard) continue;
+    content.dimensions.push_back({d.name + (d.side.empty() ? "" : ", " + d.side), fixed(1e3 * d.value_m, 1),
+                                  d.uncertainty_m ? fixed(1e3 * *d.uncertainty_m, 1) : "", d.standard,
+                                  d.definition});
+    if (!d.course.empty()) content.curves.push_back({d.name, d.course});
+  }
+  for (int s = 0; s < kSegmentCount; ++s) {
+    const SegmentMeasure& segment = m.report.body.segments[static_cast<std::size_t>(s)];
+    content.segments.push_back({std::string(kSegmentNames[static_cast<std::size_t>(s)]),
+                                fixed(1e6 * segment.volume_m3, 0) + " cm³", "", "",
+                                "length " + fixed(1e3 * segment.length_m, 0) + " mm, surface " +
+                                    fixed(1e4 * segment.area_m2, 0) + " cm², mass " +
+                                    fixed(segment.mass_kg, 3) + " kg"});
+  }
+  return to_html_report(content);
+}
+
+}  // namespace
+
+std::vector<ExportedFile> export_files(const std::string& format, const MeasuredRegistration& m) {
+  if (format == "ply" || format == "obj") return coloured_meshes(m, format == "ply");
+  if (format == "html") return {{"report.html", html_report(m)}};
+  const ExportedBody body = exported_body(m);
+  if (format == "glb") return {{"body.glb", to_skinned_glb(body)}};
+  if (format == "npz") return {{"amass.npz", to_amass_npz(body)}};
+  if (format == "smpl") return {{"body.smpl", to_smpl_codec(body)}};
+  if (format == "trc") {
+    return {{"markers.trc", to_trc(body, "markers.trc")}, {"markers_subject.json", to_subject_json(body)}};
+  }
+  if (format == "landmarks") return {{"landmarks.csv", to_landmark_csv(body)}};
+  throw Error(ErrorCode::usage, "--export: there is no format " + format);
+}
+
+}  // namespace vitruvian
