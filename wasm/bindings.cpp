@@ -20,6 +20,9 @@
 
 namespace {
 
+// Other threads let the memory grow without this thread's views knowing; naming one here renews them all.
+EM_JS(double, renewed_memory_size, (), { return HEAPU8.length; });
+
 using vitruvian::Error;
 using vitruvian::ErrorCode;
 using vitruvian::wasm::Buffer;
@@ -70,6 +73,9 @@ const char* const kNoText = nullptr;
 extern "C" {
 
 EMSCRIPTEN_KEEPALIVE const char* vitruvian_version() { return VITRUVIAN_VERSION; }
+
+/// Bytes of the module's memory. Makes Module.HEAPU8 cover all of it.
+EMSCRIPTEN_KEEPALIVE double vitruvian_memory() { return renewed_memory_size(); }
 
 EMSCRIPTEN_KEEPALIVE int vitruvian_has_threads() { return VITRUVIAN_THREADED; }
 

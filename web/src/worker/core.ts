@@ -30,6 +30,7 @@ interface Module {
   _malloc(size: number): number;
   _free(address: number): void;
   _vitruvian_version(): Text;
+  _vitruvian_memory(): number;
   _vitruvian_has_threads(): number;
   _vitruvian_last_error(): Text;
   _vitruvian_create(threads: number): number;
@@ -118,7 +119,13 @@ export class Core {
 
   /** Bytes of the module's memory. */
   heap(): number {
-    return this.module.HEAPU8.byteLength;
+    return this.module._vitruvian_memory();
+  }
+
+  /** All of the module's memory as it is now: it may have grown since the last look, on any thread. */
+  private get memory(): Uint8Array {
+    this.module._vitruvian_memory();
+    return this.module.HEAPU8;
   }
 
   cancel(): void {
@@ -141,7 +148,7 @@ export class Core {
         this.onProgress("Loading the body model", fraction),
       );
       const address = this.allocate(bytes.length);
-      this.module.HEAPU8.set(bytes, address);
+      this.memory.set(bytes, address);
       this.withText(name, (title) =>
         this.check(this.module._vitruvian_load_model(part, address, bytes.length, title)),
       );
@@ -187,7 +194,7 @@ export class Core {
       const outputs = await runNetwork(network, this.floats(input));
       for (const [j, output] of outputs.entries()) {
         const address = this.check(this.module._vitruvian_reply_buffer(i, j, output.length)) >>> 0;
-        this.module.HEAPU8.set(new Uint8Array(output.buffer, output.byteOffset, output.byteLength), address);
+        this.memory.set(new Uint8Array(output.buffer, output.byteOffset, output.byteLength), address);
       }
     }
     this.checkCancelled();
@@ -230,8 +237,7 @@ export class Core {
   /** A copy, never shared, of a piece of the module's memory. */
   private bytes(address: number, size: number): Uint8Array<ArrayBuffer> {
     const copy = new Uint8Array(size);
-    // HEAPU8 is read anew each time: the module replaces it when its memory grows.
-    copy.set(this.module.HEAPU8.subarray(address, address + size));
+    copy.set(this.memory.subarray(address, address + size));
     return copy;
   }
 
@@ -243,7 +249,7 @@ export class Core {
       for (;;) {
         const { done, value } = await reader.read();
         if (done) break;
-        this.module.HEAPU8.set(value, address + offset);
+        this.memory.set(value, address + offset);
         offset += value.length;
         this.onProgress("Loading the scan", offset / file.size);
       }
@@ -257,7 +263,7 @@ export class Core {
   private storeText(text: string): number {
     const encoded = new TextEncoder().encode(`${text}\0`);
     const address = this.allocate(encoded.length);
-    this.module.HEAPU8.set(encoded, address);
+    this.memory.set(encoded, address);
     return address;
   }
 
@@ -268,7 +274,7 @@ export class Core {
   }
 
   private text(address: Text): string {
-    const heap = this.module.HEAPU8;
+    const heap = this.memory;
     return new TextDecoder().decode(this.bytes(address, heap.indexOf(0, address) - address));
   }
 
