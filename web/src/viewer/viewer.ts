@@ -43,6 +43,7 @@ Mesh.prototype.raycast = acceleratedRaycast;
 const SCAN_COLOUR = 0xb9bcc2;
 const BODY_COLOUR = 0xe0a458;
 const SKELETON_COLOUR = 0xb3261e;
+const COMPILE_MS = 150;
 const KEYPOINT_RADIUS_M = 0.014;
 /** Parent of each of the 24 joints, in SMPL's order; the root has none. */
 const PARENTS = [-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19, 20, 21];
@@ -66,6 +67,8 @@ export class Viewer {
   private legendMaximumMm = 10;
   private errorsMm: Float32Array | null = null;
   private frame = 0;
+  /** Whether materials may have come that the graphics driver has not seen. */
+  private uncompiled = true;
 
   /** @throws Error when the browser has no WebGL. */
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -73,6 +76,8 @@ export class Viewer {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.outputColorSpace = SRGBColorSpace;
     this.renderer.setScissorTest(true);
+    // Asking the driver whether it is content would wait for it.
+    this.renderer.debug.checkShaderErrors = false;
     this.scanRoot.matrixAutoUpdate = false;
     const key = new DirectionalLight(0xffffff, 1.4);
     key.position.set(0.6, 1, 1);
@@ -106,6 +111,7 @@ export class Viewer {
 
   /** @param scan null removes it */
   setScan(scan: ScanData | null): void {
+    this.uncompiled = true;
     clear(this.scanRoot);
     const mesh = scan?.mesh;
     this.scanOrigin.set(...(scan?.origin ?? ([0, 0, 0] as const)));
@@ -169,6 +175,7 @@ export class Viewer {
   }
 
   setKeypoints(keypoints: readonly Keypoint[]): void {
+    this.uncompiled = true;
     clear(this.keypointRoot);
     const seen = keypoints.filter((keypoint) => keypoint.position_m !== null);
     if (seen.length > 0) {
@@ -186,6 +193,7 @@ export class Viewer {
 
   /** @param joints of the 24, body frame; none removes the skeleton */
   setSkeleton(joints: readonly Vec3[]): void {
+    this.uncompiled = true;
     clear(this.skeletonRoot);
     if (joints.length >= PARENTS.length) {
       const ends = PARENTS.flatMap((parent, joint) =>
@@ -211,6 +219,7 @@ export class Viewer {
 
   /** Shows the body's directions beside the aligned scan. */
   setAxes(shown: boolean): void {
+    this.uncompiled = true;
     disposeAxes(this.axesRoot);
     if (shown) {
       this.axesRoot.add(bodyAxes(new Box3().setFromObject(this.scanRoot)));
@@ -321,6 +330,7 @@ export class Viewer {
 
   /** Body colours: the error scale, or plain. */
   private paint(): void {
+    this.uncompiled = true;
     const mesh = this.bodyRoot.children[0] as Mesh<BufferGeometry, MeshLambertMaterial> | undefined;
     if (!mesh) return;
     const coloured = this.options?.heatMap === true && this.errorsMm !== null && this.errorsMm.length > 0;
@@ -370,7 +380,24 @@ export class Viewer {
     }
   }
 
+  /** Lets the driver compile what is new without anyone waiting, then draws. */
+  private compile(): void {
+    this.uncompiled = false;
+    const draw = () => this.request();
+    if (this.renderer.extensions.has("KHR_parallel_shader_compile")) {
+      this.renderer.compileAsync(this.scene, this.camera).then(draw, draw);
+    } else {
+      // Such a driver does not tell when it is ready.
+      this.renderer.compile(this.scene, this.camera);
+      setTimeout(draw, COMPILE_MS);
+    }
+  }
+
   private draw(): void {
+    if (this.uncompiled) {
+      this.compile();
+      return;
+    }
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
     this.renderer.setSize(width, height, false);
