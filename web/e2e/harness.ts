@@ -37,12 +37,14 @@ export function launch(): Promise<Browser> {
     executablePath: "/usr/bin/chromium",
     args: [
       "--no-sandbox",
-      "--disable-gpu",
+      ...(process.env.VITRUVIAN_GRAPHICS?.split(" ") ?? ["--disable-gpu"]),
       "--disable-quic",
       "--no-first-run",
       "--disable-background-networking",
       "--disable-component-update",
       "--disable-sync",
+      // Memory is measured at once, after a collection.
+      "--enable-blink-features=ForceEagerMeasureMemory",
     ],
   });
 }
