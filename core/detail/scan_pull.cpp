@@ -11,6 +11,7 @@ constexpr float kCompatible = 0.3f;  // least cosine of two normals of one surfa
 // The closest place on a surface lies along its normal; sideways by more than this is the rim of a hole.
 constexpr float kSidewaysShare = 0.5f, kSidewaysAllowance = 0.002f;  // of the distance along; m
 constexpr int kCloudNeighbours = 8;
+constexpr float kOneSided = 0.8f;     // of the neighbours' distances that does not cancel out
 constexpr double kFullDensity = 0.5;  // of the median number of samples an area, above which a vertex is sure
 
 float robust_weight(float squared_distance, double scale) {
@@ -36,17 +37,19 @@ struct SamplePull {
                                                            const Faces& faces, const PullSettings& settings,
                                                            const Execution& execution) {
   const ClosestPointOnMesh surface(vertices, faces);
-  std::vector<SamplePull> pulls(static_cast<std::size_t>(samples.points.cols()));
-  execution.parallel_for(samples.points.cols(), 512, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const Index count = (samples.points.cols() + settings.stride - 1) / settings.stride;
+  std::vector<SamplePull> pulls(static_cast<std::size_t>(count));
+  execution.parallel_for(count, 512, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i) {
       if (i % 4096 == 0) execution.check();
-      const Vec3f point = samples.points.col(i);
+      const Index sample = i * settings.stride;
+      const Vec3f point = samples.points.col(sample);
       const SurfacePoint at = surface.query(point, static_cast<float>(settings.reach));
       if (at.face < 0) continue;
       Vec3f normal = Vec3f::Zero();
       for (int k = 0; k < 3; ++k) normal += at.barycentric[k] * normals.col(faces(k, at.face));
       normal.normalize();
-      if (!compatible(normal, samples.normals.col(i))) continue;
+      if (!compatible(normal, samples.normals.col(sample))) continue;
       const Vec3f displacement = point - at.position;
       pulls[i] = {at.face, robust_weight(displacement.squaredNorm(), settings.robust_scale),
                   normal.dot(displacement), at.barycentric, displacement};
@@ -78,32 +81,27 @@ Foot foot_on_mesh(const ScanSurface& scan, const Vec3f& x, const Vec3f& normal,
   return {robust_weight(displacement.squaredNorm(), settings.robust_scale), displacement};
 }
 
-/// Mean distance to the planes of the nearest points, along the vertex's normal.
+/// Mean distance to the planes of the nearest points.
 Foot foot_on_cloud(const ScanSurface& scan, const Vec3f& x, const Vec3f& normal, const PullSettings& settings,
                    std::vector<Neighbour>& around) {
   scan.tree.nearest(x, kCloudNeighbours, around);
   if (around.empty() || around[0].squared_distance > settings.reach * settings.reach) return {};
-  Vec3f mean = Vec3f::Zero();
-  float sum = 0, count = 0;
-  float reach = 0;
+  Vec3f mean = Vec3f::Zero(), centre = Vec3f::Zero();
+  float spread = 0, count = 0;
   for (const Neighbour& n : around) {
-    const Vec3f there = scan.normals.col(n.index);
+    const Vec3f there = scan.normals.col(n.index), away = scan.points.col(n.index) - x;
     if (!compatible(normal, there)) continue;
-    const Vec3f away = scan.points.col(n.index) - x;
     const Vec3f& direction = there.isZero() ? normal : there;
     mean += direction.dot(away) * direction;
-    sum += (away - normal.dot(away) * normal).norm();
-    reach = std::max(reach, (away - normal.dot(away) * normal).norm());
+    const Vec3f sideways = away - normal.dot(away) * normal;
+    centre += sideways;
+    spread += sideways.norm();
     count += 1;
   }
   if (2 * count <= static_cast<float>(around.size())) return {};
+  // Beyond the cloud's rim all neighbours lie to one side.
+  if (centre.norm() > kOneSided * spread + count * kSidewaysAllowance) return {};
   mean /= count;
-  // Beyond the cloud's edge all neighbours lie to one side.
-  Vec3f centre = Vec3f::Zero();
-  for (const Neighbour& n : around) centre += scan.points.col(n.index) - x;
-  centre /= static_cast<float>(around.size());
-  const float sideways = (centre - normal.dot(centre) * normal).norm();
-  if (sideways > 0.8f * sum / count + kSidewaysAllowance) return {};
   return {robust_weight(mean.squaredNorm(), settings.robust_scale), mean};
 }
 
@@ -233,7 +231,9 @@ Pull pull_of_scan(const SurfaceSamples& samples, const ScanSurface& scan, const 
   Pull pull{Points3d::Zero(3, count), Eigen::VectorXd::Zero(count), median(spreads)};
   for (Index v = 0; v < count; ++v) {
     const double sure = share[v] > 0 ? std::min(1.0, share[v] / (areas[v] * density)) : 0;
-    const double own = settings.foot_share * feet[v].weight;
+    // The planes of a cloud's points are wider than its samples and flatten what is round: they only fill in.
+    const double own =
+        settings.foot_share * feet[v].weight * (scan.mesh != nullptr ? 1.0 : std::max(0.0, 1 - sure));
     pull.weight[v] = sure + own;
     if (pull.weight[v] <= 0) continue;
     Vec3d mean = own * feet[v].displacement.cast<double>();

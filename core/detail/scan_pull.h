@@ -13,6 +13,7 @@ struct PullSettings {
   double reach;         ///< m; points farther apart do not know of each other
   double robust_scale;  ///< m; of the Geman-McClure weights
   double foot_share;    ///< weight of a vertex's own closest scan point beside the scan samples round it
+  int stride = 1;       ///< only every stride-th sample draws
 };
 
 /// Where the scan wants each vertex to go.

@@ -74,8 +74,11 @@ Points3f vertex_offsets(const BodyModel& model, const BodyState& state, const Sc
 
     const Points3f vertices = (parametric + displacement).cast<float>();
     const Points3f normals = vertex_normals(vertices, model.faces);
+    // While the surface is stiff few samples tell as much as many.
+    const int to_go = settings.iterations - 1 - i;
+    const int stride = to_go < 2 ? 1 : to_go < 5 ? 2 : 4;
     const Pull pull = pull_of_scan(samples, scan, vertices, normals, model.faces, solver.areas(),
-                                   {reach, robust, foot_share}, execution);
+                                   {reach, robust, foot_share, stride}, execution);
     noise = std::sqrt(std::max(0.0, pull.roughness * pull.roughness - kCleanRoughness * kCleanRoughness));
     displacement = solver.solve({smoothing}, pull.weight, displacement + pull.displacement);
     execution.progress("detail", static_cast<double>(i + 1) / settings.iterations);
