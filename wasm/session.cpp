@@ -211,6 +211,10 @@ std::string Session::files_report(const std::string& mesh_format) {
       names.emplace_back("errors.csv");
       files_.push_back(errors_csv(*registration_->surface_error));
     }
+    if (registration_->offsets.cols() > 0) {
+      names.emplace_back(kOffsetsFile);
+      files_.push_back(offsets_npz(registration_->offsets));
+    }
   }
   nlohmann::json files = nlohmann::json::array();
   for (std::size_t i = 0; i < files_.size(); ++i) {

@@ -90,9 +90,10 @@ export interface Registration {
   model: { name: string; gender: Gender; vertices: number; faces: number; betas: number; joints: number };
   alignment: Alignment | null;
   keypoints: Keypoint[];
-  parameters: { betas: number[]; pose: number[]; translation_m: Vec3 } | null;
+  parameters: { betas: number[]; pose: number[]; translation_m: Vec3; offsets?: string } | null;
   joints: { name: string; body_m: Vec3; scan: Vec3 }[];
-  surface_error: SurfaceError | null;
+  /** `parametric`: before vertex offsets were added. */
+  surface_error: (SurfaceError & { parametric?: SurfaceError }) | null;
   verdict: Verdict;
   timing_ms: Record<string, number>;
   settings: Record<string, unknown>;

@@ -1,5 +1,6 @@
 import { seconds } from "../../result/format";
 import { BodyChoice } from "../BodyChoice";
+import { DetailChoice } from "../DetailChoice";
 import { RunStage } from "../RunStage";
 import { result, scan } from "../state";
 import { ViewControls } from "../ViewControls";
@@ -28,6 +29,7 @@ export function RegisterPanel() {
         measured.
       </p>
       <BodyChoice />
+      <DetailChoice />
       <RunStage stage="register" />
       {registered && <ViewControls />}
       {registered && (

@@ -44,8 +44,17 @@ export function ResultsPanel() {
       </div>
       <ViewControls />
       {surface_error && <Errors error={surface_error} />}
+      {surface_error?.parametric && (
+        <p class="quiet">
+          Before the vertex offsets the mean was {millimetres(surface_error.parametric.surface_all.mean_mm)}{" "}
+          mm. The verdict is about the body without them.
+        </p>
+      )}
       {data.vertexErrorMm.length > 0 && <ErrorHistogram valuesMm={data.vertexErrorMm} />}
-      <Downloads failed={verdict.status === "failed"} />
+      <Downloads
+        failed={verdict.status === "failed"}
+        offsets={data.registration.parameters?.offsets !== undefined}
+      />
       {joints.length > 0 && (
         <details>
           <summary>Joints (scan frame, scan units)</summary>
@@ -139,8 +148,10 @@ function Figures({
   );
 }
 
-function Downloads({ failed }: { failed: boolean }) {
-  const names = failed ? ["registration.json"] : ["registration.json", "registered.ply", "errors.csv"];
+function Downloads({ failed, offsets }: { failed: boolean; offsets: boolean }) {
+  const names = ["registration.json"];
+  if (!failed) names.push("registered.ply", "errors.csv");
+  if (offsets) names.push("offsets.npz");
   return (
     <section aria-label="Downloads">
       <h3>Downloads</h3>
