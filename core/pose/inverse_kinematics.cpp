@@ -13,7 +13,7 @@ namespace vitruvian {
 namespace {
 
 using Objective = InverseKinematicsObjective;
-constexpr int kJoints = Objective::kJoints, kTargets = Objective::kTargets;
+constexpr int kTargets = Objective::kTargets;
 /// Joints that move little against each other: pelvis, hips, spine, neck, collars, shoulders.
 constexpr int kTrunk[] = {0, 1, 2, 3, 6, 9, 12, 13, 14, 16, 17};
 
@@ -44,10 +44,10 @@ void lay_trunk(Objective& objective, const PoseVae& vae, const Points3d& targets
 
 void check(const BodyModel& model, const PoseVae& vae, const Points3d& targets,
            const Eigen::VectorXd& weights) {
-  if (model.joint_count() != kJoints) {
+  if (model.joint_count() < kTargets) {
     throw Error(ErrorCode::bad_model,
                 model.name +
-                    ": inverse kinematics needs a model of 24 joints in SMPL order, this "
+                    ": inverse kinematics needs a model whose first 22 joints are SMPL's, this "
                     "one has " +
                     std::to_string(model.joint_count()));
   }
@@ -89,7 +89,11 @@ InverseKinematicsResult solve_inverse_kinematics(const BodyModel& model, const P
   check(model, vae, targets, confidences);
   Objective objective(model, vae, targets, confidences, options);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(objective.size());
-  lay_trunk(objective, vae, targets, confidences, x);
+  if (options.start_translation) {
+    x.tail<3>() = *options.start_translation;
+  } else {
+    lay_trunk(objective, vae, targets, confidences, x);
+  }
 
   LbfgsOptions search;
   search.iterations = options.iterations;
@@ -107,8 +111,8 @@ InverseKinematicsResult solve_inverse_kinematics(const BodyModel& model, const P
 
   const DecodedPose decoded(vae, found.x.head(objective.latent()));
   const Objective::Pose pose = objective.pose(decoded, found.x);
-  result.pose.resize(3, kJoints);
-  for (int j = 0; j < kJoints; ++j) result.pose.col(j) = vector_from_rotation(pose.rotation[j]);
+  result.pose.resize(3, model.joint_count());
+  for (int j = 0; j < model.joint_count(); ++j) result.pose.col(j) = vector_from_rotation(pose.rotation[j]);
   result.z = found.x.head(objective.latent());
   result.betas = found.x.segment(objective.latent(), objective.betas());
   result.translation = found.x.tail<3>();

@@ -29,16 +29,16 @@ InverseKinematicsObjective::InverseKinematicsObjective(const BodyModel& model, c
 InverseKinematicsObjective::Pose InverseKinematicsObjective::pose(const DecodedPose& decoded,
                                                                   const Eigen::VectorXd& x) const {
   Pose p;
-  p.rotation.assign(kJoints, Mat3d::Identity());
+  p.rotation.assign(joint_count(), Mat3d::Identity());
   p.rotation[0] = rotation_from_vector<double>(x.segment<3>(latent_ + betas_)) * start_root;
   for (int j = 1; j <= PoseVae::kJoints; ++j) p.rotation[j] = decoded.rotations()[j - 1];
   p.rest = model_.joint_template;
   const Eigen::VectorXd moved = model_.joint_shapedirs.leftCols(betas_) * x.segment(latent_, betas_);
-  p.rest += Eigen::Map<const Points3d>(moved.data(), 3, kJoints);
+  p.rest += Eigen::Map<const Points3d>(moved.data(), 3, joint_count());
   p.global = p.rotation;
-  p.joints.resize(3, kJoints);
+  p.joints.resize(3, joint_count());
   p.joints.col(0) = p.rest.col(0) + x.tail<3>();
-  for (int j = 1; j < kJoints; ++j) {
+  for (int j = 1; j < joint_count(); ++j) {
     const int parent = model_.parent[j];
     p.global[j] = p.global[parent] * p.rotation[j];
     p.joints.col(j) = p.joints.col(parent) + p.global[parent] * (p.rest.col(j) - p.rest.col(parent));
@@ -52,7 +52,7 @@ double InverseKinematicsObjective::operator()(const Eigen::VectorXd& x, Eigen::V
 
   // Sums over the joints below each joint: of the derivative by place ("force"), and of place x force
   // ("moment").
-  Points3d force = Points3d::Zero(3, kJoints), moment = Points3d::Zero(3, kJoints);
+  Points3d force = Points3d::Zero(3, joint_count()), moment = Points3d::Zero(3, joint_count());
   double cost = 0;
   for (int j = 0; j < kTargets; ++j) {
     if (weights_[j] == 0) continue;
@@ -61,15 +61,15 @@ double InverseKinematicsObjective::operator()(const Eigen::VectorXd& x, Eigen::V
     force.col(j) = 2 * options_.data_weight * weights_[j] * error;
     moment.col(j) = Vec3d(p.joints.col(j)).cross(Vec3d(force.col(j)));
   }
-  for (int j = kJoints - 1; j > 0; --j) {
+  for (int j = joint_count() - 1; j > 0; --j) {
     force.col(model_.parent[j]) += force.col(j);
     moment.col(model_.parent[j]) += moment.col(j);
   }
 
   Eigen::VectorXd by_turn(3 * PoseVae::kJoints);
-  Points3d by_rest(3, kJoints);  // gradient by each joint's rest offset from its parent
+  Points3d by_rest(3, joint_count());  // gradient by each joint's rest offset from its parent
   by_rest.col(0) = force.col(0);
-  for (int j = 1; j < kJoints; ++j) {
+  for (int j = 1; j < joint_count(); ++j) {
     const Mat3d& parent = p.global[model_.parent[j]];
     by_rest.col(j) = parent.transpose() * force.col(j);
     if (j > PoseVae::kJoints) continue;
@@ -82,7 +82,7 @@ double InverseKinematicsObjective::operator()(const Eigen::VectorXd& x, Eigen::V
   gradient.head(latent_) = decoded.pull_back(by_turn) + 2 * options_.latent_weight * z;
   // From offsets to joints: a joint's rest place is its own offset's end and its children's start.
   Points3d by_joint = by_rest;
-  for (int j = 1; j < kJoints; ++j) by_joint.col(model_.parent[j]) -= by_rest.col(j);
+  for (int j = 1; j < joint_count(); ++j) by_joint.col(model_.parent[j]) -= by_rest.col(j);
   gradient.segment(latent_, betas_) =
       model_.joint_shapedirs.leftCols(betas_).transpose() *
           Eigen::Map<const Eigen::VectorXd>(by_joint.data(), by_joint.size()) +

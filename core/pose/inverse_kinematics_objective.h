@@ -13,11 +13,12 @@ namespace vitruvian {
 /// (rotation vector), translation.
 class InverseKinematicsObjective {
  public:
-  static constexpr int kJoints = 24, kTargets = 22;
+  static constexpr int kTargets = 22;
 
   InverseKinematicsObjective(const BodyModel& model, const PoseVae& vae, const Points3d& targets,
                              const Eigen::VectorXd& weights, const InverseKinematicsOptions& options);
 
+  int joint_count() const { return model_.joint_count(); }
   int size() const { return latent_ + betas_ + 6; }
   int latent() const { return latent_; }
   int betas() const { return betas_; }
@@ -26,9 +27,9 @@ class InverseKinematicsObjective {
   Mat3d start_root = Mat3d::Identity();
 
   struct Pose {
-    std::vector<Mat3d> rotation;  ///< 24, relative to the parent
-    std::vector<Mat3d> global;    ///< 24, body_from_joint
-    Points3d rest, joints;        ///< 3 x 24
+    std::vector<Mat3d> rotation;  ///< J, relative to the parent
+    std::vector<Mat3d> global;    ///< J, body_from_joint
+    Points3d rest, joints;        ///< 3 x J
   };
   /// Forward kinematics at x, whose latent code has been decoded.
   Pose pose(const DecodedPose& decoded, const Eigen::VectorXd& x) const;

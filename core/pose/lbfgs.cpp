@@ -172,6 +172,7 @@ LbfgsResult minimize_lbfgs(const DifferentiableFunction& function, Eigen::Vector
     result.x = std::move(next.x);
     result.value = next.value;
     result.gradient = std::move(next.gradient);
+    if (options.each) options.each(result.iterations, result.value);
     if (gain <= options.decrease_tolerance * std::abs(result.value)) {
       result.stop = LbfgsStop::decrease;
       return result;

@@ -19,6 +19,8 @@ struct LbfgsOptions {
   double curvature = 0.9;             ///< Wolfe constant c2
   /// Length of the very first step, in x's units; later ones start from the quasi-Newton step.
   double first_step = 1.0;
+  /// Called after every iteration with its number (from 1) and the value it reached; may be empty.
+  std::function<void(int iteration, double value)> each;
 };
 
 enum class LbfgsStop { gradient, decrease, iterations, line_search };
