@@ -29,7 +29,6 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, Enum& target
 struct Pending {
   std::vector<std::string> texts;
   std::string init;
-  bool one_directional = false;
 };
 
 void add_method_options(CLI::App& command, RegisterArguments& a, Pending& pending) {
@@ -49,20 +48,17 @@ void add_method_options(CLI::App& command, RegisterArguments& a, Pending& pendin
   command.add_option("--init", pending.init, "start of the fit; FILE is an earlier registration.json")
       ->type_name("auto|keypoints|tpose|FILE");
   add_choice(command, "--solver", a.settings.solver, "optimiser of the fit");
-  const CLI::Validator positive = CLI::Range(1, 1000000).description("");
-  const std::vector<std::pair<const char*, const char*>> counts = {
-      {"--iterations", "iterations of each stage"},
-      {"--adam-iterations", "Adam iterations of each stage before L-BFGS (paper solver)"},
-      {"--chunk", "rows of the distance matrix held at once (paper solver)"}};
-  for (const auto& [name, help] : counts) {
-    command
-        .add_option_function<int>(
-            name, [](int) {}, help)
-        ->check(positive)
-        ->type_name("N");
-  }
-  command.add_flag("--one-directional", pending.one_directional,
+  const auto add_count = [&](const char* name, int& target, int least, const char* help) {
+    command.add_option(name, target, help)->check(CLI::Range(least, 1000000).description(""))->type_name("N");
+  };
+  add_count("--iterations", a.settings.iterations, 1,
+            "iterations of each stage (paper solver; default: 6000, paper-cpu 2000)");
+  add_count("--adam-iterations", a.settings.adam_iterations, 0,
+            "of these by Adam, the rest by L-BFGS (paper solver; default: 6000, paper-cpu 100)");
+  command.add_flag("--one-directional", a.settings.one_directional,
                    "distances from template to scan only (paper solver)");
+  add_count("--chunk", a.settings.chunk, 1,
+            "distances by brute force, N x N at once, instead of by kd-trees (paper solver)");
 }
 
 void add_model_options(CLI::App& command, RegisterArguments& a) {
@@ -88,14 +84,12 @@ void add_scan_options(CLI::App& command, RegisterArguments& a) {
   add_choice(command, "--units", a.settings.unit, "unit of the file");
   add_choice(command, "--up", a.settings.up, "axis of the file that points up");
   add_choice(command, "--front", a.settings.front, "axis of the file that the body faces");
-  command
-      .add_option_function<std::string>(
-          "--align-file", [](const std::string&) {}, "4x4 body_from_scan as JSON")
-      ->type_name("FILE");
+  command.add_option("--align-file", a.align_file, "4x4 body_from_scan as JSON")->type_name("FILE");
   command.option_defaults()->group("Edits made by hand");
+  command.add_option("--keypoints", a.keypoints_file, "joints placed by hand, used instead of looking")
+      ->type_name("FILE");
+  command.add_option("--regions", a.regions_file, "pairs of regions that belong together")->type_name("FILE");
   const std::vector<std::pair<const char*, const char*>> edits = {
-      {"--keypoints", "joints placed by hand"},
-      {"--regions", "pairs of regions that belong together"},
       {"--crop", "what to leave out of the scan"},
       {"--project", "all of these in one file, as the page saves it"}};
   for (const auto& [name, help] : edits) {
@@ -130,20 +124,34 @@ void add_output_options(CLI::App& command, RegisterArguments& a) {
 }
 
 void settle_register(const CLI::App& command, const Pending& pending, RegisterArguments& a) {
-  for (const char* name : {"--iterations", "--adam-iterations", "--chunk", "--one-directional", "--dmpl",
-                           "--prior", "--align-file", "--keypoints", "--regions", "--crop", "--project"}) {
+  for (const char* name : {"--dmpl", "--prior", "--crop", "--project"}) {
     if (command.count(name) > 0) a.not_available.emplace_back(name);
   }
-  if (a.settings.method != Method::ours)
-    a.not_available.push_back("--method " + to_string(a.settings.method));
-  if (a.settings.solver != SolverKind::fast)
-    a.not_available.push_back("--solver " + to_string(a.settings.solver));
+  // The method's stages, but for those that were given.
+  const Settings method = settings_of(a.settings.method);
+  const auto stage = [&](const char* option, auto Settings::*member) {
+    if (command.count(option) == 0) a.settings.*member = method.*member;
+  };
+  stage("--align", &Settings::align);
+  stage("--views", &Settings::views);
+  stage("--init", &Settings::init);
+  stage("--solver", &Settings::solver);
+  stage("--iterations", &Settings::iterations);
+  stage("--adam-iterations", &Settings::adam_iterations);
+  stage("--one-directional", &Settings::one_directional);
+  if (a.settings.solver != SolverKind::paper) {
+    for (const char* name : {"--iterations", "--adam-iterations", "--one-directional", "--chunk"}) {
+      if (command.count(name) > 0)
+        throw Error(ErrorCode::usage,
+                    std::string(name) + " belongs to --solver paper: add that, or --method paper");
+    }
+  }
   if (pending.init.empty()) return;
   const std::optional<InitMode> init = value_named<InitMode>(pending.init);
-  if (!init || *init == InitMode::tpose) {
-    a.not_available.push_back("--init " + pending.init);
-  } else {
+  if (init && *init != InitMode::file) {
     a.settings.init = *init;
+  } else {
+    a.init_file = pending.init;
   }
 }
 

@@ -19,6 +19,10 @@ struct RegisterArguments {
   std::string out;
   Settings settings;
   std::string model_file;  ///< empty: the default body
+  std::string init_file;   ///< --init FILE; this and the following are empty when not given
+  std::string align_file;
+  std::string keypoints_file;
+  std::string regions_file;
   MeshFormat format = MeshFormat::ply;
   bool quiet = false;
   bool json = false;

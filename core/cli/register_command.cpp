@@ -6,6 +6,7 @@
 #include <optional>
 #include <thread>
 
+#include "cli/edits.h"
 #include "cli/paths.h"
 #include "cli/progress.h"
 #include "cli/table.h"
@@ -252,9 +253,11 @@ ExitStatus run_register(const RegisterArguments& arguments, const CliContext& co
     throw Error(ErrorCode::not_available, list + ": not yet available in this version");
   }
   const std::vector<std::string> folders = output_folders(arguments.scans, arguments.out);
-  const RegisterFunction register_scan = context.open_register(arguments);
-  make_folders(arguments.out);
-  return RegisterRun(arguments, context).run(folders, register_scan);
+  RegisterArguments loaded = arguments;
+  loaded.settings = load_edits(arguments);
+  const RegisterFunction register_scan = context.open_register(loaded);
+  make_folders(loaded.out);
+  return RegisterRun(loaded, context).run(folders, register_scan);
 }
 
 }  // namespace vitruvian

@@ -6,6 +6,7 @@
 #include "cli/paths.h"
 #include "io/file.h"
 #include "keypoints/landmark_calibration.h"
+#include "pipeline/check_settings.h"
 #include "pipeline/pipeline.h"
 
 namespace vitruvian {
@@ -39,6 +40,7 @@ BodyOpener native_body(std::vector<std::string> folders) {
 RegisterFactory native_register(std::vector<std::string> folders) {
   return [folders = std::move(folders)](const RegisterArguments& arguments) -> RegisterFunction {
     const auto models = std::make_shared<const Models>(load_models(arguments, folders));
+    check_settings(arguments.settings, *models);
     const std::string landmarks = find_data_file(folders, "blazepose_landmarks.opencv.onnx");
     const std::string detector = find_data_file(folders, "blazepose_detector.opencv.onnx");
     return [=](Scan scan, const Settings& settings, const Execution& execution, double read_ms) {

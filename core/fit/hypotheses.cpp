@@ -172,4 +172,22 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
   return best;
 }
 
+HypothesisResult fit_from_state(const FitModel& model, const ScanTarget& scan, const BodyState& start,
+                                const std::string& name, const std::vector<LandmarkTarget>& landmarks,
+                                const HypothesisSettings& settings, const Execution& execution) {
+  HypothesisResult result;
+  int budget = settings.refit_budget;
+  Fit fit{start, {}};
+  fit_surface(model, scan, FitSchedule::coarse(), landmarks, fit.state, execution);
+  fit.score = score_fit(model, scan, fit.state, kCoarseScoreSamples);
+  result.repairs = repair(model, scan, settings, fit, budget, execution);
+  fit_surface(model, scan, FitSchedule::polish(), {}, fit.state, execution);
+  result.state = fit.state;
+  result.score = score_fit(model, scan, fit.state);
+  result.start = name;
+  result.bad = is_hopeless(result.score, settings);
+  result.refits = settings.refit_budget - budget;
+  return result;
+}
+
 }  // namespace vitruvian

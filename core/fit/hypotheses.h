@@ -46,6 +46,13 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
                                 const std::vector<LandmarkTarget>& plain, const HypothesisSettings& settings,
                                 const Execution& execution);
 
+/// Fits from one given state, without trying others; limbs are searched anew as there.
+/// @param landmarks  may be empty.
+/// @param name  recorded as HypothesisResult::start.
+HypothesisResult fit_from_state(const FitModel& model, const ScanTarget& scan, const BodyState& start,
+                                const std::string& name, const std::vector<LandmarkTarget>& landmarks,
+                                const HypothesisSettings& settings, const Execution& execution);
+
 /// The landmark on the other side of the body, or the landmark itself (nose).
 int mirrored_landmark(int landmark);
 

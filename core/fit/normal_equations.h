@@ -21,7 +21,8 @@ struct Correspondence {
 /// A landmark that sits at a constant offset in a bone's frame: joint + global(frame_joint) * offset should
 /// be at target.
 struct LandmarkTarget {
-  int landmark;  ///< BlazePose number, 0..32
+  static constexpr int kJointItself = -1;
+  int landmark;  ///< BlazePose number, 0..32, or kJointItself
   int joint;
   int frame_joint;
   Vec3d offset;

@@ -4,7 +4,7 @@
 
 #include "align/frame.h"
 #include "base/error.h"
-#include "fit/landmark_fit.h"
+#include "pipeline/start_state.h"
 
 namespace vitruvian {
 namespace {
@@ -12,14 +12,10 @@ namespace {
 /// Views from which the facing is found.
 constexpr int kFacingViews = 8;
 
-/// Whether the heading follows from what the pictures show.
-bool turns_by_sight(const Settings& settings) {
-  return settings.front == Axis::automatic && settings.align != AlignMode::pca;
-}
-
 }  // namespace
 
 Mat4d Attempt::body_from_scan(const Vec3d& centroid_scan, double metres_per_unit) const {
+  if (placement_.body_from_scan) return *placement_.body_from_scan;
   const Heading& heading = seen_ ? *seen_ : *aligned_;
   const Mat4d upright_from_scan = vitruvian::body_from_scan(heading.rotation, centroid_scan, metres_per_unit);
   return heading.yaw ? facing_forward(upright_from_scan, *heading.yaw) : upright_from_scan;
@@ -60,6 +56,10 @@ std::optional<NetworkRequest> Attempt::next_request(PipelineStage until, const A
     align(context);
   }
   if (until == PipelineStage::align) return std::nullopt;
+  if (!landmarks_ && !looks_for_landmarks(context.settings)) {
+    seen_ = aligned_;
+    landmarks_ = SeenLandmarks();
+  }
   if (!landmarks_) {
     const int views = context.settings.views;
     if (!look_ || look_->views != views) {
@@ -76,8 +76,10 @@ std::optional<NetworkRequest> Attempt::next_request(PipelineStage until, const A
   if (!pose_) {
     context.clock.enter(&Timing::pose);
     context.execution.progress("pose", 0);
-    pose_ =
-        fit_landmarks(context.fit_model, landmark_targets(context.models.landmarks, landmarks_->swap_aware));
+    const Mat4d frame = body_from_scan(context.scan.centroid, context.unit.metres_per_unit);
+    pose_ = initial_pose(context.fit_model, context.settings,
+                         pose_targets(context.models, context.settings, *landmarks_, frame),
+                         transformed(frame, context.scan.centroid), context.execution);
   }
   return std::nullopt;
 }
@@ -89,7 +91,9 @@ void Attempt::look(int views, const Mat3d& rotation, const AttemptContext& conte
   const double metres_per_unit = context.unit.metres_per_unit;
   upright.vertices =
       transform_points(upright.vertices, context.scan.scan.origin,
-                       vitruvian::body_from_scan(rotation, context.scan.centroid, metres_per_unit));
+                       placement_.body_from_scan
+                           ? *placement_.body_from_scan
+                           : vitruvian::body_from_scan(rotation, context.scan.centroid, metres_per_unit));
   upright.normals = (rotation.cast<float>() * upright.normals).eval();
   upright.point_radii *= static_cast<float>(metres_per_unit);
   look_.reset(new Look{

@@ -86,10 +86,12 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
   const BodyModel& body = input.models.body;
   const PlacedScan placed(input.scan, input.body_from_scan, execution);
   const ScanSurface surface = placed.surface();
-  const ScanTarget samples = ScanTarget::sample(placed.points(), input.scan.scan.faces, placed.normals(),
-                                                kRefineSamples, input.settings.seed + 17);
   BodyState state = input.fit.state;
-  refine_fit(input.fit_model, surface, samples, RefineSettings(), state, execution);
+  if (input.refine) {
+    const ScanTarget samples = ScanTarget::sample(placed.points(), input.scan.scan.faces, placed.normals(),
+                                                  kRefineSamples, input.settings.seed + 17);
+    refine_fit(input.fit_model, surface, samples, RefineSettings(), state, execution);
+  }
 
   // The result is what the double-precision forward model says, so that it can be rebuilt from the
   // parameters.
@@ -99,8 +101,7 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
   const Skeleton skeleton = pose_skeleton(body, state);
   VerdictFeatures features = features_from(measured);
   features.joint_limit_excess_rad = limit_excess(body, input.models.prior, state);
-  features.keypoint_disagreement_m = keypoint_disagreement(
-      landmark_targets(input.models.landmarks, input.landmarks.swap_aware), body, skeleton);
+  features.keypoint_disagreement_m = keypoint_disagreement(input.targets, body, skeleton);
   features.stature_m = standing_stature(body, state.betas);
   if (!input.unit_note.empty()) features.notes.push_back(input.unit_note);
 
@@ -111,7 +112,7 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
   result.model = {body.name,           body.family,       body.sha256,           input.settings.gender,
                   body.vertex_count(), body.face_count(), input.fit_model.betas, body.joint_count()};
   result.alignment = describe_alignment(input.body_from_scan, input.unit, input.method);
-  result.keypoints = smpl_keypoints(input.landmarks.swap_aware);
+  result.keypoints = input.keypoints;
   result.parameters = BodyParameters{state.betas, state.axis_angle(), state.translation, ""};
   const Points3d joints_scan = scan_from_body(input, skeleton.joints);
   for (int j = 0; j < body.joint_count(); ++j) {

@@ -20,11 +20,13 @@ struct OutcomeInput {
   const PreparedScan& scan;
   const Mat4d& body_from_scan;
   const HypothesisResult& fit;
-  const SeenLandmarks& landmarks;  ///< body frame
+  const std::vector<LandmarkTarget>& targets;  ///< what the fit was to meet, body frame
+  const std::vector<Keypoint>& keypoints;      ///< 22, body frame
   UnitCandidate unit{};
   std::string unit_note{};
   std::string method{};
   double stature = 0;
+  bool refine = true;  ///< false: the fit is final, as published
   /// Called when the work turns to another stage, for its time.
   std::function<void(double Timing::*)> begin_stage = [](double Timing::*) {};
 };

@@ -4,9 +4,12 @@
 
 #include "align/frame.h"
 #include "base/error.h"
-#include "fit/landmark_fit.h"
 #include "fit/scan_target.h"
+#include "pipeline/check_settings.h"
 #include "pipeline/outcome.h"
+#include "pipeline/paper_pipeline.h"
+#include "pipeline/regions.h"
+#include "pipeline/start_state.h"
 
 namespace vitruvian {
 namespace {
@@ -25,16 +28,6 @@ double stature_excess(double stature) {
   return std::max({0.0, kLeastStature - stature, stature - kLargestStature});
 }
 
-void require_offered(const Settings& settings) {
-  if (settings.method != Method::ours || settings.solver != SolverKind::fast) {
-    throw Error(ErrorCode::not_available, "the published method and solver are not yet available");
-  }
-  if (settings.init != InitMode::automatic && settings.init != InitMode::keypoints) {
-    throw Error(ErrorCode::not_available, "--init tpose is not yet available");
-  }
-  if (settings.views != 2 && settings.views != 8) throw Error(ErrorCode::usage, "--views must be 2 or 8");
-}
-
 }  // namespace
 
 RegistrationPipeline::Search::Search() : refit_budget(kRefitBudget) {}
@@ -42,7 +35,7 @@ RegistrationPipeline::Search::Search() : refit_budget(kRefitBudget) {}
 RegistrationPipeline::RegistrationPipeline(const Models& models, const Settings& settings,
                                            const Execution& execution)
     : models_(models), settings_(settings), execution_(execution) {
-  require_offered(settings);
+  check_settings(settings, models);
   fit_model_ = std::make_unique<FitModel>(models.body, models.prior, settings.gender, settings.betas);
 }
 
@@ -64,7 +57,7 @@ void RegistrationPipeline::set_scan(std::shared_ptr<const Scan> scan) {
 void RegistrationPipeline::configure(const Settings& settings) {
   const auto affected = first_affected(settings_, settings);
   if (!affected) return;
-  require_offered(settings);
+  check_settings(settings, models_);
   auto fit_model = std::make_unique<FitModel>(models_.body, models_.prior, settings.gender, settings.betas);
   forget(*affected);
   fit_model_ = std::move(fit_model);
@@ -86,8 +79,13 @@ AttemptContext RegistrationPipeline::context() {
 }
 
 void RegistrationPipeline::choose_units() {
-  if (settings_.unit == Unit::automatic) {
+  if (settings_.body_from_scan) {
+    units_ = UnitGuess();
+    units_.candidates = {unit_of(*settings_.body_from_scan, scan_->extent)};
+  } else if (settings_.unit == Unit::automatic) {
     units_ = guess_unit(scan_->extent, scan_->scan.metres_per_unit);
+    // Section 3.1.1: by the extent alone.
+    if (settings_.method != Method::ours) units_.candidates.resize(1);
   } else {
     units_ = UnitGuess();
     units_.candidates = {fixed_unit(settings_.unit, scan_->extent)};
@@ -102,7 +100,11 @@ bool RegistrationPipeline::find_placements(std::optional<NetworkRequest>& reques
   clock_.enter(&Timing::align);
   if (settings_.align == AlignMode::pca) {
     attempts_.emplace_back(
-        Placement{align_pca(surface.vertices, models_.body.v_template), Vec3d::UnitY(), "pca"});
+        Placement{align_pca(surface.vertices, models_.body.v_template), Vec3d::UnitY(), "pca", {}});
+    return true;
+  }
+  if (!needs_pictures(settings_)) {
+    attempts_.emplace_back(given_placement(settings_));
     return true;
   }
   if (!up_detector_) {
@@ -138,6 +140,9 @@ std::optional<NetworkRequest> RegistrationPipeline::next_request(PipelineStage u
 
 std::optional<NetworkRequest> RegistrationPipeline::work(PipelineStage until) {
   std::optional<NetworkRequest> request;
+  // Told at once when they were painted on another scan.
+  regions_ =
+      settings_.regions ? region_labels(*settings_.regions, scan_->scan, models_.body) : RegionLabels();
   if (attempts_.empty() && !find_placements(request)) return request;
   for (const PipelineStage stage : {PipelineStage::align, PipelineStage::keypoints, PipelineStage::pose}) {
     clock_.work_for(stage);
@@ -184,15 +189,29 @@ RegistrationPipeline::Candidate RegistrationPipeline::fit_candidate(std::size_t 
       transform_points(scan_->scan.vertices, scan_->scan.origin, candidate.body_from_scan);
   const Mat3d linear = candidate.body_from_scan.topLeftCorner<3, 3>();
   const Points3f normals = (linear / unit.metres_per_unit).cast<float>() * scan_->normals;
+  candidate.seen = pose_targets(models_, settings_, candidate.landmarks, candidate.body_from_scan);
+  const Vec3d centroid = transformed(candidate.body_from_scan, scan_->centroid);
+  candidate.initial =
+      as_seen ? attempt.pose()
+              : vitruvian::initial_pose(*fit_model_, settings_, candidate.seen, centroid, execution_);
+  if (settings_.solver == SolverKind::paper && attempts_.size() == 1 && units_.candidates.size() == 1) {
+    // Nothing to choose: the published fit is all there is to do.
+    candidate.fit.state = candidate.initial;
+    return candidate;
+  }
   const ScanTarget target =
       ScanTarget::sample(points, scan_->scan.faces, normals, kFitSamples, settings_.seed);
-  const auto targets = landmark_targets(models_.landmarks, candidate.landmarks.swap_aware);
-  std::vector<LandmarkTarget> plain;
-  if (!candidate.landmarks.plain.empty())
-    plain = landmark_targets(models_.landmarks, candidate.landmarks.plain);
-  candidate.initial = as_seen ? attempt.pose() : fit_landmarks(*fit_model_, targets);
-  hypotheses.landmark_fit = candidate.initial;
-  candidate.fit = fit_hypotheses(*fit_model_, target, targets, plain, hypotheses, execution_);
+  const std::vector<LandmarkTarget>& targets = candidate.seen.targets;
+  if (start_is_given(settings_)) {
+    candidate.fit = fit_from_state(*fit_model_, target, candidate.initial, to_string(settings_.init), targets,
+                                   hypotheses, execution_);
+  } else {
+    std::vector<LandmarkTarget> plain;
+    if (!candidate.landmarks.plain.empty())
+      plain = landmark_targets(models_.landmarks, candidate.landmarks.plain);
+    hypotheses.landmark_fit = candidate.initial;
+    candidate.fit = fit_hypotheses(*fit_model_, target, targets, plain, hypotheses, execution_);
+  }
   search_.refit_budget -= candidate.fit.refits;
   candidate.stature = standing_stature(models_.body, candidate.fit.state.betas);
   return candidate;
@@ -219,10 +238,26 @@ void RegistrationPipeline::fit_attempt() {
   Candidate candidate = fit_candidate(search_.at, unit, false);
   if (!search_.best || rank(candidate) < rank(*search_.best)) search_.best = std::move(candidate);
   if (!search_.best->fit.bad || search_.at + 1 >= attempts_.size()) {
+    if (settings_.solver == SolverKind::paper) fit_as_published(*search_.best);
     search_.done = true;
   } else {
     ++search_.at;
   }
+}
+
+void RegistrationPipeline::fit_as_published(Candidate& candidate) {
+  const Points3f points =
+      transform_points(scan_->scan.vertices, scan_->scan.origin, candidate.body_from_scan);
+  clock_.enter(&Timing::fit);
+  execution_.progress("fit", 0);
+  const PaperFit distance =
+      paper_distance_fit(*fit_model_, points, regions_, candidate.initial, settings_, execution_);
+  clock_.enter(&Timing::refine);
+  execution_.progress("refine", 0);
+  const PaperRefinement refined =
+      paper_correspondence_fit(*fit_model_, points, regions_, distance.state, settings_, execution_);
+  candidate.fit.state = refined.second_pass.state;
+  candidate.stature = standing_stature(models_.body, candidate.fit.state.betas);
 }
 
 Registration RegistrationPipeline::finish() {
@@ -232,7 +267,9 @@ Registration RegistrationPipeline::finish() {
   clock_.enter(&Timing::refine);
   execution_.progress("refine", 0);
   const Candidate& best = *search_.best;
-  OutcomeInput input{models_, *fit_model_, settings_, *scan_, best.body_from_scan, best.fit, best.landmarks};
+  OutcomeInput input{models_,  *fit_model_,       settings_,          *scan_, best.body_from_scan,
+                     best.fit, best.seen.targets, best.seen.keypoints};
+  input.refine = settings_.solver == SolverKind::fast;
   input.unit = best.unit;
   input.unit_note = units_.note;
   input.method = attempts_[best.attempt].method();
@@ -280,7 +317,9 @@ const LandmarkStage* RegistrationPipeline::landmark_stage() const {
 
 std::vector<Keypoint> RegistrationPipeline::keypoints() const {
   require(PipelineStage::keypoints);
-  return smpl_keypoints((search_.done ? search_.best->landmarks : shown().landmarks()).swap_aware);
+  if (search_.done) return search_.best->seen.keypoints;
+  const Mat4d frame = shown().body_from_scan(scan_->centroid, shown_unit().metres_per_unit);
+  return pose_targets(models_, settings_, shown().landmarks(), frame).keypoints;
 }
 
 const BodyState& RegistrationPipeline::initial_pose() const {

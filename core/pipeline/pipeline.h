@@ -9,8 +9,10 @@
 #include "align/units.h"
 #include "align/up_detector.h"
 #include "fit/hypotheses.h"
+#include "fit/region_labels.h"
 #include "keypoints/network.h"
 #include "pipeline/attempt.h"
+#include "pipeline/given_keypoints.h"
 #include "pipeline/landmark_stage.h"
 #include "pipeline/models.h"
 #include "pipeline/prepared_scan.h"
@@ -97,7 +99,8 @@ class RegistrationPipeline {
     Mat4d body_from_scan;
     UnitCandidate unit;
     SeenLandmarks landmarks;  // body frame
-    BodyState initial;        // posed by them alone
+    PoseTargets seen;
+    BodyState initial;  // posed by them alone, or given
     HypothesisResult fit;
     double stature = 0;  // m, of the fitted body, standing
   };
@@ -119,6 +122,7 @@ class RegistrationPipeline {
   /// @param quick  without searching for misplaced limbs or other starts.
   Candidate fit_candidate(std::size_t attempt, const UnitCandidate& unit, bool quick);
   double rank(const Candidate& candidate) const;
+  void fit_as_published(Candidate& candidate);
   const Attempt& shown() const;
   const UnitCandidate& shown_unit() const;
   void require(PipelineStage stage) const;
@@ -132,6 +136,7 @@ class RegistrationPipeline {
   std::unique_ptr<ViewSurface> detector_surface_;
   std::unique_ptr<UpDetector> up_detector_;  // knows the scan alone: no setting makes it look again
   UnitGuess units_;
+  RegionLabels regions_;
   std::vector<Attempt> attempts_;
   Search search_;
 

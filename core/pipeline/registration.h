@@ -37,14 +37,6 @@ struct Keypoint {
 /// Name of the file of vertex offsets beside registration.json.
 constexpr const char* kOffsetsFile = "offsets.npz";
 
-/// Parameters of the registered body, body frame.
-struct BodyParameters {
-  Eigen::VectorXd betas;
-  Points3d pose;  ///< 3 x J axis-angle, root first
-  Vec3d translation_m = Vec3d::Zero();
-  std::string offsets_file{};  ///< file beside registration.json that holds the vertex offsets; empty: none
-};
-
 struct RegisteredJoint {
   std::string name;
   Vec3d body_m;

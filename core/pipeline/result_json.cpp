@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "pipeline/result_json_value.h"
-#include "pipeline/settings_names.h"
+#include "pipeline/settings_json.h"
 
 namespace vitruvian {
 namespace {
@@ -125,13 +125,7 @@ ordered_json keypoint_rows(const std::vector<Keypoint>& keypoints) {
 }
 
 ordered_json parameters_json(const std::optional<BodyParameters>& parameters) {
-  if (!parameters) return nullptr;
-  ordered_json result;
-  result["betas"] = numbers(parameters->betas);
-  result["pose"] = numbers(parameters->pose);
-  result["translation_m"] = numbers(parameters->translation_m);
-  if (!parameters->offsets_file.empty()) result["offsets"] = parameters->offsets_file;
-  return result;
+  return parameters ? parameters_to_json(*parameters) : ordered_json();
 }
 
 ordered_json joint_rows(const std::vector<RegisteredJoint>& joints) {
@@ -156,25 +150,6 @@ ordered_json timing_json(const Timing& timing) {
   add("detail", timing.detail);
   add("write", timing.write);
   add("total", timing.total);
-  return result;
-}
-
-ordered_json settings_json(const Settings& settings) {
-  ordered_json result;
-  result["method"] = to_string(settings.method);
-  result["align"] = to_string(settings.align);
-  result["views"] = settings.views;
-  result["min_visibility"] = settings.min_visibility;
-  result["init"] = to_string(settings.init);
-  result["solver"] = to_string(settings.solver);
-  result["gender"] = name_of(settings.gender);
-  result["betas"] = settings.betas;
-  result["units"] = to_string(settings.unit);
-  result["up"] = to_string(settings.up);
-  result["front"] = to_string(settings.front);
-  result["detail"] = to_string(settings.detail);
-  result["threads"] = settings.threads;
-  result["seed"] = settings.seed;
   return result;
 }
 
@@ -212,7 +187,7 @@ std::string registration_json(const Registration& registration, std::string_view
                          {"confidence", rounded(registration.verdict.confidence, 1e4)},
                          {"reasons", registration.verdict.reasons}};
   document["timing_ms"] = timing_json(registration.timing_ms);
-  document["settings"] = settings_json(registration.settings);
+  document["settings"] = settings_to_json(registration.settings);
   return json_text(document, style);
 }
 

@@ -26,7 +26,10 @@ bool is_keypoint_joint(std::string_view name) {
 
 KeypointSet parse_keypoints(std::string_view text, const std::string& file_name) {
   const nlohmann::json json = parse_json(text, file_name);
-  const JsonValue document(json, file_name, "");
+  return keypoint_set_from_json(JsonValue(json, file_name, ""));
+}
+
+KeypointSet keypoint_set_from_json(const JsonValue& document) {
   KeypointSet keypoints;
   const std::string frame = document.at("frame").text();
   const auto found = std::find(kFrameNames.begin(), kFrameNames.end(), frame);
@@ -46,7 +49,7 @@ KeypointSet parse_keypoints(std::string_view text, const std::string& file_name)
   return keypoints;
 }
 
-std::string keypoints_json(const KeypointSet& keypoints, JsonStyle style) {
+ordered_json keypoint_set_to_json(const KeypointSet& keypoints) {
   ordered_json joints = ordered_json::object();
   for (std::size_t j = 0; j < kKeypointJoints; ++j) {
     const auto found = keypoints.joints.find(std::string(kSmplJointNames[j]));
@@ -57,7 +60,11 @@ std::string keypoints_json(const KeypointSet& keypoints, JsonStyle style) {
   ordered_json document;
   document["frame"] = kFrameNames[static_cast<std::size_t>(keypoints.frame)];
   document["joints"] = std::move(joints);
-  return json_text(document, style);
+  return document;
+}
+
+std::string keypoints_json(const KeypointSet& keypoints, JsonStyle style) {
+  return json_text(keypoint_set_to_json(keypoints), style);
 }
 
 JointTruth parse_truth(std::string_view text, const std::string& file_name) {
@@ -76,7 +83,10 @@ JointTruth parse_truth(std::string_view text, const std::string& file_name) {
 Mat4d parse_alignment(std::string_view text, const std::string& file_name) {
   const nlohmann::json json = parse_json(text, file_name);
   const JsonValue document(json, file_name, "");
-  const JsonValue value = document.is_array() ? document : document.at("body_from_scan");
+  return alignment_from_json(document.is_array() ? document : document.at("body_from_scan"));
+}
+
+Mat4d alignment_from_json(const JsonValue& value) {
   const Mat4d matrix = value.matrix4();
   if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) value.fail("the last row must be 0 0 0 1");
   const Mat3d linear = matrix.topLeftCorner<3, 3>();

@@ -6,26 +6,20 @@
 #include <vector>
 
 #include "base/types.h"
+#include "pipeline/edits.h"
 #include "pipeline/result_json.h"
+#include "pipeline/result_json_value.h"
 #include "pipeline/settings.h"
 
 namespace vitruvian {
 
-enum class KeypointFrame { scan, body, canonical };
-
-/// Joints placed by hand or exported: keypoints JSON of contract.md.
-struct KeypointSet {
-  struct Joint {
-    Vec3d position = Vec3d::Zero();  ///< scan units in the scan frame, else metres
-    double confidence = 1;           ///< 0..1
-  };
-  KeypointFrame frame = KeypointFrame::scan;
-  std::map<std::string, Joint> joints;  ///< by SMPL name; a joint that is missing is not used
-};
-
 /// @throws Error(bad_file) naming the place: unknown frame or joint, position not three finite numbers,
 /// confidence out of 0..1, no joint at all.
 KeypointSet parse_keypoints(std::string_view text, const std::string& file_name);
+
+/// The same of a value inside a document.
+KeypointSet keypoint_set_from_json(const JsonValue& value);
+nlohmann::ordered_json keypoint_set_to_json(const KeypointSet& keypoints);
 
 /// Joints in SMPL order.
 std::string keypoints_json(const KeypointSet& keypoints, JsonStyle style);
@@ -44,5 +38,7 @@ JointTruth parse_truth(std::string_view text, const std::string& file_name);
 /// a similarity without mirroring, unit factor included.
 /// @throws Error(bad_file) naming what is wrong.
 Mat4d parse_alignment(std::string_view text, const std::string& file_name);
+/// The same of the four rows inside a document.
+Mat4d alignment_from_json(const JsonValue& value);
 
 }  // namespace vitruvian

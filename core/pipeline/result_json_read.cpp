@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "pipeline/result_json.h"
 #include "pipeline/result_json_value.h"
+#include "pipeline/settings_json.h"
 #include "pipeline/settings_names.h"
 
 namespace vitruvian {
@@ -99,37 +100,6 @@ std::vector<Keypoint> read_keypoints(const JsonValue& value) {
   return result;
 }
 
-BodyParameters read_parameters(const JsonValue& value) {
-  BodyParameters parameters;
-  parameters.betas = value.at("betas").numbers();
-  const Eigen::VectorXd pose = value.at("pose").numbers();
-  if (pose.size() == 0 || pose.size() % 3 != 0) value.at("pose").fail("three numbers a joint are expected");
-  parameters.pose = Eigen::Map<const Points3d>(pose.data(), 3, pose.size() / 3);
-  parameters.translation_m = value.at("translation_m").vector3();
-  if (value.has("offsets")) parameters.offsets_file = value.at("offsets").text();
-  return parameters;
-}
-
-Settings read_settings(const JsonValue& value) {
-  Settings settings;
-  settings.method = named<Method>(value.at("method"));
-  settings.align = named<AlignMode>(value.at("align"));
-  settings.views = static_cast<int>(value.at("views").whole(1, 64));
-  settings.min_visibility = value.at("min_visibility").number();
-  settings.init = named<InitMode>(value.at("init"));
-  settings.solver = named<SolverKind>(value.at("solver"));
-  settings.gender = named<Gender>(value.at("gender"));
-  settings.betas = static_cast<int>(value.at("betas").whole(0, 10000));
-  settings.unit = named<Unit>(value.at("units"));
-  settings.up = named<Axis>(value.at("up"));
-  settings.front = named<Axis>(value.at("front"));
-  settings.detail = named<DetailMode>(value.at("detail"));
-  settings.threads = static_cast<int>(value.at("threads").whole(0, 4096));
-  settings.seed =
-      static_cast<std::uint32_t>(value.at("seed").whole(0, std::numeric_limits<std::uint32_t>::max()));
-  return settings;
-}
-
 Timing read_timing(const JsonValue& value) {
   Timing timing;
   timing.read = number_or_zero(value.at("read"));
@@ -180,7 +150,7 @@ Registration parse_registration(std::string_view text, const std::string& file_n
   registration.alignment = read_alignment(document);
   registration.keypoints = read_keypoints(document.at("keypoints"));
   if (!document.at("parameters").is_null())
-    registration.parameters = read_parameters(document.at("parameters"));
+    registration.parameters = parameters_from_json(document.at("parameters"));
   const JsonValue joints = document.at("joints");
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const JsonValue joint = joints.at(i);
@@ -199,7 +169,7 @@ Registration parse_registration(std::string_view text, const std::string& file_n
   for (std::size_t i = 0; i < reasons.size(); ++i)
     registration.verdict.reasons.push_back(reasons.at(i).text());
   registration.timing_ms = read_timing(document.at("timing_ms"));
-  registration.settings = read_settings(document.at("settings"));
+  registration.settings = settings_from_json(document.at("settings"));
   return registration;
 }
 

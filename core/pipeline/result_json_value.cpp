@@ -106,6 +106,11 @@ std::string JsonValue::text() const {
   return value_->get<std::string>();
 }
 
+bool JsonValue::truth() const {
+  if (!value_->is_boolean()) fail("true or false is expected");
+  return value_->get<bool>();
+}
+
 Vec3d JsonValue::vector3() const {
   if (!value_->is_array() || value_->size() != 3) fail("three numbers [x, y, z] are expected");
   return {at(std::size_t{0}).number(), at(1).number(), at(2).number()};

@@ -38,6 +38,8 @@ class JsonValue {
   /// A whole number in [low, high].
   std::int64_t whole(std::int64_t low, std::int64_t high) const;
   std::string text() const;
+  /// true or false.
+  bool truth() const;
   /// Three numbers.
   Vec3d vector3() const;
   /// Four rows of four numbers.

@@ -12,8 +12,10 @@ constexpr std::array<NamedValue<Method>, 3> kMethods = {
     {{Method::ours, "ours"}, {Method::paper, "paper"}, {Method::paper_cpu, "paper-cpu"}}};
 constexpr std::array<NamedValue<AlignMode>, 2> kAlignModes = {
     {{AlignMode::automatic, "auto"}, {AlignMode::pca, "pca"}}};
-constexpr std::array<NamedValue<InitMode>, 3> kInitModes = {
-    {{InitMode::automatic, "auto"}, {InitMode::keypoints, "keypoints"}, {InitMode::tpose, "tpose"}}};
+constexpr std::array<NamedValue<InitMode>, 4> kInitModes = {{{InitMode::automatic, "auto"},
+                                                             {InitMode::keypoints, "keypoints"},
+                                                             {InitMode::tpose, "tpose"},
+                                                             {InitMode::file, "file"}}};
 constexpr std::array<NamedValue<SolverKind>, 2> kSolvers = {
     {{SolverKind::fast, "fast"}, {SolverKind::paper, "paper"}}};
 constexpr std::array<NamedValue<DetailMode>, 2> kDetailModes = {
@@ -74,6 +76,22 @@ std::span<const NamedValue<Axis>> named_values() {
 template <>
 std::span<const NamedValue<Gender>> named_values() {
   return kGenders;
+}
+
+Settings settings_of(Method method) {
+  Settings settings;
+  settings.method = method;
+  if (method == Method::ours) return settings;
+  settings.align = AlignMode::pca;
+  settings.views = 2;
+  settings.init = InitMode::keypoints;
+  settings.solver = SolverKind::paper;
+  if (method == Method::paper_cpu) {
+    settings.one_directional = true;
+    settings.iterations = 2000;
+    settings.adam_iterations = 100;
+  }
+  return settings;
 }
 
 std::string to_string(Method value) { return name_in_table(value); }

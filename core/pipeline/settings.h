@@ -1,15 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "body/model.h"
+#include "pipeline/edits.h"
 
 namespace vitruvian {
 
 enum class Method { ours, paper, paper_cpu };
 enum class AlignMode { automatic, pca };
-enum class InitMode { automatic, keypoints, tpose };
+/// Where the fit starts. `file`: at the body of an earlier registration, Settings::start.
+enum class InitMode { automatic, keypoints, tpose, file };
 enum class SolverKind { fast, paper };
 enum class DetailMode { off, vertex };
 enum class Unit { automatic, metre, centimetre, millimetre, inch };
@@ -25,6 +28,10 @@ struct Settings {
   double min_visibility = 0.0;
   InitMode init = InitMode::automatic;
   SolverKind solver = SolverKind::fast;
+  int iterations = 6000;         ///< paper solver: of each stage
+  int adam_iterations = 6000;    ///< paper solver: of these by Adam, the rest by L-BFGS
+  bool one_directional = false;  ///< paper solver: distances from template to scan only
+  int chunk = 0;                 ///< paper solver: points a side of a block of distances; 0: kd-trees
   Gender gender = Gender::neutral;
   int betas = 0;  ///< number of shape components used; 0 = all of the model's
   Unit unit = Unit::automatic;
@@ -33,9 +40,16 @@ struct Settings {
   DetailMode detail = DetailMode::off;
   int threads = 0;  ///< 0 = as many as the machine has
   std::uint32_t seed = 1;
+  std::optional<Mat4d> body_from_scan;   ///< given instead of found; unit factor included
+  std::optional<KeypointSet> keypoints;  ///< given instead of detected
+  std::optional<StartBody> start;        ///< with InitMode::file
+  std::optional<RegionSet> regions;      ///< pairs that are matched with each other only
 
   bool operator==(const Settings&) const = default;
 };
+
+/// The settings that a method stands for; single stages are overridden in them.
+Settings settings_of(Method method);
 
 std::string to_string(Method value);
 std::string to_string(AlignMode value);

@@ -1,5 +1,7 @@
 #include "pipeline/stage.h"
 
+#include "pipeline/placement.h"
+
 namespace vitruvian {
 namespace {
 
@@ -15,11 +17,23 @@ std::optional<PipelineStage> first_affected(const Settings& before, const Settin
   Settings taken = before;
   taken.detail = after.detail;
   taken.solver = after.solver;
+  taken.iterations = after.iterations;
+  taken.adam_iterations = after.adam_iterations;
+  taken.one_directional = after.one_directional;
+  taken.chunk = after.chunk;
+  taken.regions = after.regions;
   if (taken == after) return PipelineStage::fit;
   taken.gender = after.gender;
   taken.betas = after.betas;
-  taken.init = after.init;
+  // A start that was given makes looking for landmarks superfluous.
+  if (looks_for_landmarks(before) == looks_for_landmarks(after)) {
+    taken.init = after.init;
+    taken.start = after.start;
+  }
   if (taken == after) return PipelineStage::pose;
+  taken.init = after.init;
+  taken.start = after.start;
+  if (!lies_by_keypoints(before) && !lies_by_keypoints(after)) taken.keypoints = after.keypoints;
   taken.views = after.views;
   taken.min_visibility = after.min_visibility;
   if (taken == after) return PipelineStage::keypoints;

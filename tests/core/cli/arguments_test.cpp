@@ -82,26 +82,70 @@ TEST(Arguments, WrongValuesAreRefusedByName) {
 }
 
 TEST(Arguments, OptionsWithoutAFeatureAreNamed) {
-  for (const std::vector<std::string>& options :
-       std::vector<std::vector<std::string>>{{"--method", "paper"},
-                                             {"--method", "paper-cpu"},
-                                             {"--solver", "paper"},
-                                             {"--iterations", "5"},
-                                             {"--init", "tpose"},
-                                             {"--init", "old.json"},
-                                             {"--chunk", "100"},
-                                             {"--adam-iterations", "6"},
-                                             {"--one-directional"},
-                                             {"--dmpl", "f"},
-                                             {"--prior", "f"},
-                                             {"--align-file", "f"},
-                                             {"--keypoints", "f"},
-                                             {"--regions", "f"},
-                                             {"--crop", "f"},
-                                             {"--project", "f"}}) {
+  for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
+           {"--dmpl", "f"}, {"--prior", "f"}, {"--crop", "f"}, {"--project", "f"}}) {
     const std::vector<std::string> named = registering(options).not_available;
     ASSERT_EQ(named.size(), 1u) << options[0];
     EXPECT_EQ(named[0].rfind(options[0], 0), 0u) << named[0];
+  }
+}
+
+TEST(Arguments, FilesOfEditsAreNamed) {
+  const RegisterArguments a =
+      registering({"--init", "old.json", "--keypoints", "k.json", "--align-file", "a.json"});
+  EXPECT_EQ(a.init_file, "old.json");
+  EXPECT_EQ(a.keypoints_file, "k.json");
+  EXPECT_EQ(a.align_file, "a.json");
+  EXPECT_EQ(registering({"--init", "tpose"}).settings.init, InitMode::tpose);
+  EXPECT_EQ(registering({"--init", "tpose"}).init_file, "");
+  EXPECT_EQ(registering({"--init", "file"}).init_file, "file") << "a file of that name";
+  EXPECT_TRUE(a.not_available.empty());
+}
+
+TEST(Arguments, MethodsStandForTheirStages) {
+  const Settings paper = registering({"--method", "paper"}).settings;
+  EXPECT_EQ(paper.align, AlignMode::pca);
+  EXPECT_EQ(paper.views, 2);
+  EXPECT_EQ(paper.init, InitMode::keypoints);
+  EXPECT_EQ(paper.solver, SolverKind::paper);
+  EXPECT_EQ(paper.iterations, 6000);
+  EXPECT_EQ(paper.adam_iterations, 6000);
+  EXPECT_FALSE(paper.one_directional);
+  EXPECT_EQ(paper.chunk, 0);
+  const Settings cpu = registering({"--method", "paper-cpu"}).settings;
+  EXPECT_EQ(cpu.iterations, 2000);
+  EXPECT_EQ(cpu.adam_iterations, 100);
+  EXPECT_TRUE(cpu.one_directional);
+  EXPECT_EQ(cpu.align, AlignMode::pca);
+}
+
+TEST(Arguments, SingleStagesOverrideTheMethodWhereverTheyStand) {
+  const Settings s = registering({"--views", "8", "--init", "tpose", "--method", "paper-cpu", "--align",
+                                  "auto", "--iterations", "50", "--chunk", "512", "--one-directional=false"})
+                         .settings;
+  EXPECT_EQ(s.views, 8);
+  EXPECT_EQ(s.init, InitMode::tpose);
+  EXPECT_EQ(s.align, AlignMode::automatic);
+  EXPECT_EQ(s.solver, SolverKind::paper);
+  EXPECT_EQ(s.iterations, 50);
+  EXPECT_EQ(s.adam_iterations, 100);
+  EXPECT_EQ(s.chunk, 512);
+  EXPECT_FALSE(s.one_directional);
+  EXPECT_EQ(registering({"--method", "paper", "--solver", "fast"}).settings.solver, SolverKind::fast);
+  const Settings solver = registering({"--solver", "paper", "--adam-iterations", "0"}).settings;
+  EXPECT_EQ(solver.align, AlignMode::automatic);
+  EXPECT_EQ(solver.iterations, 6000);
+  EXPECT_EQ(solver.adam_iterations, 0);
+}
+
+TEST(Arguments, IterationsBelongToThePaperSolver) {
+  for (const std::vector<std::string>& options :
+       std::vector<std::vector<std::string>>{{"--iterations", "5"},
+                                             {"--adam-iterations", "5"},
+                                             {"--one-directional"},
+                                             {"--chunk", "5"},
+                                             {"--method", "paper", "--solver", "fast", "--chunk", "5"}}) {
+    EXPECT_NE(refusal(options).find("--solver paper"), std::string::npos) << options[0];
   }
 }
 

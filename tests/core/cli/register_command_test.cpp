@@ -160,6 +160,72 @@ TEST_F(RegisterCommand, UnusableModelGivesStatus2) {
   EXPECT_TRUE(said("m.vbm: no model"));
 }
 
+TEST_F(RegisterCommand, FilesOfEditsReachTheRegistrationAndItsJson) {
+  const std::string scan = write_scan("a.ply");
+  ASSERT_EQ(run({"register", scan, "--out", path("first")}), 0) << error();
+  const std::string keypoints =
+      write("k.json",
+            R"({"frame": "canonical", "joints": {"head": {"position": [0, 0, 1.7]}, "neck": {"position":
+               [0, 0, 1.5], "confidence": 0.5}, "pelvis": {"position": [0, 0, 1]}}})");
+  const std::string alignment =
+      write("m.json", "[[0.001, 0, 0, 1], [0, 0, 0.001, 2], [0, -0.001, 0, 3], [0, 0, 0, 1]]");
+  Settings seen;
+  register_ = [&](const Scan& s, const Settings& settings, const Execution&) {
+    seen = settings;
+    return pretended(s, settings);
+  };
+  ASSERT_EQ(
+      run({"register", scan, "--out", path("out"), "--keypoints", keypoints, "--align-file", alignment}), 0)
+      << error();
+  ASSERT_TRUE(seen.keypoints && seen.body_from_scan);
+  EXPECT_EQ(seen.keypoints->frame, KeypointFrame::canonical);
+  EXPECT_EQ(seen.keypoints->joints.at("neck").confidence, 0.5);
+  EXPECT_EQ((*seen.body_from_scan)(2, 1), -0.001);
+  json settings = json::parse(read("out/a/registration.json"))["settings"];
+  EXPECT_EQ(settings["keypoints"]["joints"]["head"]["position"], json({0, 0, 1.7}));
+  EXPECT_EQ(settings["body_from_scan"][1][3], 2);
+
+  ASSERT_EQ(run({"register", scan, "--out", path("out"), "--init", path("first/a/registration.json")}), 0)
+      << error();
+  EXPECT_EQ(seen.init, InitMode::file);
+  ASSERT_TRUE(seen.start);
+  EXPECT_EQ(seen.start->parameters.pose, sample_registration().parameters->pose);
+  EXPECT_EQ(seen.start->model_sha256, sample_registration().model.sha256);
+  settings = json::parse(read("out/a/registration.json"))["settings"];
+  EXPECT_EQ(settings["init"], "file");
+  EXPECT_EQ(settings["start"]["betas"].size(), 32u);
+}
+
+TEST_F(RegisterCommand, UnusableFilesOfEditsGiveStatus2AndNameThePlace) {
+  const std::string scan = write_scan("a.ply");
+  ASSERT_EQ(run({"register", scan, "--out", path("first")}), 0);
+  json failed = json::parse(read("first/a/registration.json"));
+  failed["parameters"] = nullptr;
+  const struct {
+    std::string option, text, said;
+  } cases[] = {
+      {"--keypoints", "{", "line 1"},
+      {"--keypoints", R"({"frame": "world", "joints": {}})", "frame: one of scan body canonical"},
+      {"--keypoints", R"({"frame": "scan", "joints": {"nose": {"position": [0, 0, 0]}}})", "joints.nose"},
+      {"--keypoints", R"({"frame": "scan", "joints": {"head": {"position": [0, 0]}}})",
+       "joints.head.position"},
+      {"--keypoints", R"({"frame": "scan", "joints": {"head": {"position": [0, 0, 1e999]}}})", "1e999"},
+      {"--align-file", "[[1, 0, 0, 0]]", "four rows"},
+      {"--align-file", "[[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]", "determinant"},
+      {"--init", "{}", "registration.json"},
+      {"--init", failed.dump(), "parameters"},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.option + " " + c.text.substr(0, 60));
+    EXPECT_EQ(run({"register", scan, "--out", path("out"), c.option, write("edit.json", c.text)}), 2);
+    EXPECT_TRUE(said("edit.json")) << error();
+    EXPECT_TRUE(said(c.said)) << error();
+  }
+  EXPECT_EQ(run({"register", scan, "--out", path("out"), "--init", path("missing.json")}), 2);
+  EXPECT_TRUE(said("missing.json"));
+  EXPECT_FALSE(exists("out"));
+}
+
 TEST_F(RegisterCommand, SettingsThatTheRegistrationRefusesGiveStatus2) {
   register_ = [](const Scan&, const Settings&, const Execution&) -> Registration {
     throw Error(ErrorCode::usage, "--front lies along --up");

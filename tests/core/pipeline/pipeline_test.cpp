@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <functional>
 #include <string>
 
 #include "core/pipeline/all_knowing_network.h"
+#include "pipeline/check_settings.h"
 #include "pipeline/outcome.h"
 #include "pipeline/result_json.h"
 
@@ -138,6 +140,132 @@ TEST(RegistrationPipeline, RefusesViewsOtherThanTwoOrEight) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::usage);
   }
+}
+
+Settings millimetres() {
+  Settings settings;
+  settings.unit = Unit::millimetre;
+  settings.threads = 2;
+  return settings;
+}
+
+/// Registers without networks: fails the test when one is asked for.
+Registration registered_blind(const Scan& scan, const Settings& settings) {
+  const Execution execution(2);
+  RegistrationPipeline pipeline(models(), settings, execution);
+  pipeline.set_scan(scan);
+  EXPECT_FALSE(pipeline.next_request());
+  return pipeline.finish();
+}
+
+void expect_registered(const Registration& r, const BodyState& truth) {
+  EXPECT_EQ(r.verdict.status, VerdictStatus::ok);
+  ASSERT_TRUE(r.surface_error);
+  EXPECT_LT(r.surface_error->surface_all.mean_mm, 0.5);
+  const Points3d joints = to_scan(pose_skeleton(default_body(), truth).joints);
+  for (int j = 0; j < 22; ++j) EXPECT_LT((r.joints[j].scan - joints.col(j)).norm(), 10) << r.joints[j].name;
+}
+
+KeypointSet true_keypoints(const BodyState& state, KeypointFrame frame, const Mat4d& body_from_scan) {
+  const Points3d joints = to_scan(pose_skeleton(default_body(), state).joints);
+  KeypointSet set{frame, {}};
+  for (int j = 0; j < 22; ++j) {
+    Vec3d p = joints.col(j);
+    if (frame != KeypointFrame::scan) p = (body_from_scan * p.homogeneous()).head<3>();
+    if (frame == KeypointFrame::canonical) p = Vec3d(-p.x(), p.z(), p.y());
+    set.joints[std::string(kSmplJointNames[j])] = {p, 1};
+  }
+  return set;
+}
+
+TEST(RegistrationPipeline, TakesKeypointsOfTheScanFrameInsteadOfLooking) {
+  const BodyState truth = standing();
+  Settings settings = millimetres();
+  settings.keypoints = true_keypoints(truth, KeypointFrame::scan, {});
+  const Registration r = registered_blind(scan_of(truth), settings);
+  expect_registered(r, truth);
+  EXPECT_EQ(r.alignment.method, "keypoints");
+  EXPECT_EQ(r.alignment.up, "z");
+  for (const Keypoint& k : r.keypoints) EXPECT_EQ(k.source, KeypointSource::user);
+}
+
+TEST(RegistrationPipeline, TakesAnAlignmentAndKeypointsOfTheBodyOrCanonicalFrame) {
+  const BodyState truth = standing();
+  const Mat4d body_from_scan = scan_from_body().inverse();
+  for (const KeypointFrame frame : {KeypointFrame::body, KeypointFrame::canonical}) {
+    Settings settings;
+    settings.body_from_scan = body_from_scan;
+    settings.keypoints = true_keypoints(truth, frame, body_from_scan);
+    const Registration r = registered_blind(scan_of(truth), settings);
+    expect_registered(r, truth);
+    EXPECT_EQ(r.alignment.method, "given");
+    EXPECT_EQ(r.alignment.body_from_scan, body_from_scan);
+    EXPECT_EQ(r.alignment.unit, Unit::millimetre);
+    EXPECT_LT((r.parameters->translation_m - truth.translation).norm(), 0.01);
+  }
+}
+
+TEST(RegistrationPipeline, StartsFromAnEarlierRegistration) {
+  const BodyState truth = standing();
+  Settings settings;
+  settings.body_from_scan = scan_from_body().inverse();
+  settings.init = InitMode::file;
+  const BodyState earlier = testing::perturbed(truth, 0.2, 0.5, 5);
+  settings.start =
+      StartBody{{earlier.betas, earlier.axis_angle(), earlier.translation}, default_body().sha256};
+  const Registration r = registered_blind(scan_of(truth), settings);
+  expect_registered(r, truth);
+  EXPECT_EQ(r.settings.init, InitMode::file);
+  for (const Keypoint& k : r.keypoints) EXPECT_EQ(k.source, KeypointSource::none);
+}
+
+TEST(RegistrationPipeline, StartsFromTheRestPose) {
+  // Near enough to the rest pose for any solver.
+  BodyState truth = BodyState::rest(default_body());
+  for (const int joint : {16, 17}) {
+    truth.rotation[joint] = Eigen::AngleAxisd(joint == 16 ? -0.3 : 0.3, Vec3d::UnitZ()).toRotationMatrix();
+  }
+  Settings settings;
+  settings.body_from_scan = scan_from_body().inverse();
+  settings.init = InitMode::tpose;
+  expect_registered(registered_blind(scan_of(truth), settings), truth);
+}
+
+TEST(CheckSettings, RefusesWhatContradictsItself) {
+  const KeypointSet keypoints = true_keypoints(standing(), KeypointFrame::scan, {});
+  const BodyParameters body{Eigen::VectorXd::Zero(32), Points3d::Zero(3, 24), Vec3d::Zero()};
+  const std::vector<std::pair<const char*, std::function<void(Settings&)>>> cases = {
+      {"--align pca", [](Settings& s) { s.body_from_scan = Mat4d::Identity(), s.align = AlignMode::pca; }},
+      {"--up", [](Settings& s) { s.body_from_scan = Mat4d::Identity(), s.up = Axis::z; }},
+      {"--units", [](Settings& s) { s.body_from_scan = Mat4d::Identity(), s.unit = Unit::metre; }},
+      {"--init tpose", [&](Settings& s) { s.keypoints = keypoints, s.init = InitMode::tpose; }},
+      {"at least 3",
+       [&](Settings& s) {
+         s.keypoints = KeypointSet{{}, {{"head", {}}, {"neck", {}}}};
+       }},
+      {"another model",
+       [&](Settings& s) {
+         s.init = InitMode::file, s.start = StartBody{body, "other"};
+       }},
+      {"2 joints",
+       [&](Settings& s) {
+         s.init = InitMode::file;
+         s.start = StartBody{{body.betas, Points3d::Zero(3, 2), {}}, default_body().sha256};
+       }},
+  };
+  for (const auto& [said, change] : cases) {
+    SCOPED_TRACE(said);
+    Settings settings;
+    change(settings);
+    try {
+      check_settings(settings, models());
+      ADD_FAILURE() << "was accepted";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::usage);
+      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_NO_THROW(check_settings(Settings(), models()));
 }
 
 TEST(PreparedScan, TurnsInsideOutScansAndFindsTheirSize) {

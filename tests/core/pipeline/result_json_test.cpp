@@ -51,9 +51,42 @@ TEST(ResultJson, HasTheContractsKeysInItsOrder) {
   EXPECT_EQ(keys(j["verdict"]), (Keys{"status", "confidence", "reasons"}));
   EXPECT_EQ(keys(j["timing_ms"]), (Keys{"read", "align", "project", "detect", "pose", "fit", "refine",
                                         "detail", "write", "total"}));
-  EXPECT_EQ(keys(j["settings"]),
-            (Keys{"method", "align", "views", "min_visibility", "init", "solver", "gender", "betas", "units",
-                  "up", "front", "detail", "threads", "seed"}));
+  EXPECT_EQ(keys(j["settings"]), (Keys{"method", "align", "views", "min_visibility", "init", "solver",
+                                       "iterations", "adam_iterations", "one_directional", "chunk", "gender",
+                                       "betas", "units", "up", "front", "detail", "threads", "seed"}));
+}
+
+TEST(ResultJson, EditsAreKeptWithAllTheirNumbers) {
+  Registration r = sample_registration();
+  r.settings.body_from_scan = r.alignment.body_from_scan;
+  r.settings.keypoints = KeypointSet{KeypointFrame::body,
+                                     {{"head", {Vec3d(1.0 / 3, 2, 3), 0.25}}, {"neck", {}}, {"pelvis", {}}}};
+  r.settings.init = InitMode::file;
+  r.settings.start = StartBody{*r.parameters, "abc"};
+  for (const JsonStyle style : {JsonStyle::compact, JsonStyle::pretty}) {
+    const Settings back = parse_registration(registration_json(r, "1", style), "r.json").settings;
+    EXPECT_EQ(back.body_from_scan, r.settings.body_from_scan);
+    ASSERT_TRUE(back.keypoints && back.start);
+    EXPECT_EQ(back.keypoints->frame, KeypointFrame::body);
+    ASSERT_EQ(back.keypoints->joints.size(), 3u);
+    EXPECT_EQ(back.keypoints->joints.at("head").position, Vec3d(1.0 / 3, 2, 3));
+    EXPECT_EQ(back.keypoints->joints.at("head").confidence, 0.25);
+    EXPECT_EQ(back.start->parameters.betas, r.parameters->betas);
+    EXPECT_EQ(back.start->parameters.pose, r.parameters->pose);
+    EXPECT_EQ(back.start->parameters.translation_m, r.parameters->translation_m);
+    EXPECT_EQ(back.start->model_sha256, "abc");
+  }
+  r.settings.regions = RegionSet{"s", "m", {{"left hand", {3, 1}, {2}}, {"feet", {0}, {5, 4}}}};
+  const Settings painted =
+      parse_registration(registration_json(r, "1", JsonStyle::pretty), "r.json").settings;
+  ASSERT_TRUE(painted.regions);
+  EXPECT_EQ(painted.regions->scan_sha256, "s");
+  ASSERT_EQ(painted.regions->pairs.size(), 2u);
+  EXPECT_EQ(painted.regions->pairs[0].scan_vertices, (std::vector<int>{3, 1}));
+  EXPECT_EQ(painted.regions->pairs[1].template_vertices, (std::vector<int>{5, 4}));
+  EXPECT_EQ(painted.regions->pairs[1].name, "feet");
+  r.settings.start.reset();
+  EXPECT_THROW(parse_registration(registration_json(r, "1", JsonStyle::compact), "r.json"), Error);
 }
 
 TEST(ResultJson, ValuesStandWhereTheyBelong) {

@@ -26,7 +26,7 @@ void expect_round_trip(std::size_t count) {
 TEST(Settings, NamesRoundTrip) {
   expect_round_trip<Method>(3);
   expect_round_trip<AlignMode>(2);
-  expect_round_trip<InitMode>(3);
+  expect_round_trip<InitMode>(4);
   expect_round_trip<SolverKind>(2);
   expect_round_trip<DetailMode>(2);
   expect_round_trip<Unit>(5);
