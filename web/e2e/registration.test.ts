@@ -52,6 +52,8 @@ describe("registering the sample scan", () => {
     const header = (bytes: Uint8Array) =>
       new TextDecoder().decode(bytes.subarray(0, 400)).split("end_header")[0];
     expect(header(zip["sample/registered.ply"]!)).toBe(header(readFileSync(join(folder, "registered.ply"))));
+    expect((await downloaded(page, "registered.glb")).toString("latin1", 0, 4)).toBe("glTF");
+    expect((await downloaded(page, "registered.obj")).toString()).toMatch(/^v .*\n/m);
   });
 
   test("shows every stage, and the view's options", async ({ page }) => {

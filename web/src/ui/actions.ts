@@ -171,12 +171,16 @@ export async function change(settings: Partial<Settings>): Promise<void> {
   if (aligned && !state.found.value.align && !state.problem.value) await run("align", state.stage.value);
 }
 
-async function files(): Promise<OutputFile[]> {
-  return client.call("files", { format: "ply" });
+const MESH_FORMATS = ["ply", "obj", "glb"] as const;
+
+/** What the command line writes with `--format format`. */
+async function files(format: (typeof MESH_FORMATS)[number] = "ply"): Promise<OutputFile[]> {
+  return client.call("files", { format });
 }
 
 export async function download(name: string): Promise<void> {
-  const file = (await files()).find((each) => each.name === name);
+  const format = MESH_FORMATS.find((each) => name.endsWith(`.${each}`));
+  const file = (await files(format)).find((each) => each.name === name);
   if (file) save(file.name, file.data);
 }
 

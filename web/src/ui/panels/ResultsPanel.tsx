@@ -148,9 +148,12 @@ function Figures({
   );
 }
 
+/** The registered mesh in each format that the command line writes. */
+const MESHES = ["registered.ply", "registered.obj", "registered.glb"];
+
 function Downloads({ failed, offsets }: { failed: boolean; offsets: boolean }) {
   const names = ["registration.json"];
-  if (!failed) names.push("registered.ply", "errors.csv");
+  if (!failed) names.push("errors.csv", ...MESHES);
   if (offsets) names.push("offsets.npz");
   return (
     <section aria-label="Downloads">
