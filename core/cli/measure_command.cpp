@@ -10,6 +10,7 @@
 #include "cli/paths.h"
 #include "geometry/mesh.h"
 #include "io/file.h"
+#include "io/npz.h"
 #include "pipeline/measurements_json.h"
 #include "pipeline/prepared_scan.h"
 #include "pipeline/result_json.h"
@@ -97,6 +98,31 @@ std::vector<LandmarkReport> landmark_reports(const Registration& registration, c
   return reports;
 }
 
+/// The vertex offsets beside a registration that has some, 3 x V; else empty.
+/// @throws Error(bad_file, cannot_read).
+Points3d rest_offsets(const MeasureArguments& arguments, const Registration& registration,
+                      const BodyModel& body) {
+  const std::string& name = registration.parameters->offsets_file;
+  if (name.empty()) return Points3d(3, 0);
+  const std::filesystem::path file_name(name);
+  if (file_name.filename() != file_name) {
+    throw Error(ErrorCode::bad_file, arguments.registration_file +
+                                         ": parameters.offsets: the name of a file beside it is expected");
+  }
+  const std::string path =
+      (std::filesystem::path(arguments.registration_file).parent_path() / file_name).string();
+  const FileBytes file(path);
+  const NumericArray array = NpzFile(file.bytes(), path).array("offsets");
+  const auto count = static_cast<std::size_t>(body.vertex_count());
+  if (array.shape != std::vector<std::size_t>{count, 3}) {
+    throw Error(ErrorCode::bad_file, path + ": offsets must be " + std::to_string(count) + " x 3");
+  }
+  const Points3d offsets = Eigen::Map<const Points3d>(array.values.data(), 3, body.vertex_count());
+  if (!offsets.allFinite())
+    throw Error(ErrorCode::bad_file, path + ": offsets hold a number that is not finite");
+  return offsets;
+}
+
 std::vector<SectionResult> wanted_sections(const Figure& figure, const MeasureArguments& arguments) {
   std::vector<SectionResult> sections;
   for (const SectionRequest& request : arguments.sections) sections.push_back(section_at(figure, request));
@@ -136,23 +162,26 @@ ExitStatus run_measure(const MeasureArguments& arguments, const CliContext& cont
   const MeasuredModel measured(body);
   const BodyState state =
       BodyState::from_axis_angle(parameters.pose, parameters.betas, parameters.translation_m);
-  const Figure figure(measured, state);
+  Points3d offsets;
+  std::optional<Figure> figure;
   std::optional<SurfaceMeasurement> surface;
-  if (!arguments.scan_file.empty()) {
-    try {
-      surface = compare_with_scan(arguments, registration, figure, context.interrupt);
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::usage || error.code() == ErrorCode::cancelled) throw;
-      context.error << "vitruvian: " << error.what() << "\n";
-      return ExitStatus::unreadable;
+  try {
+    offsets = rest_offsets(arguments, registration, body);
+    figure.emplace(measured, state, offsets);
+    if (!arguments.scan_file.empty()) {
+      surface = compare_with_scan(arguments, registration, *figure, context.interrupt);
     }
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::usage || error.code() == ErrorCode::cancelled) throw;
+    context.error << "vitruvian: " << error.what() << "\n";
+    return ExitStatus::unreadable;
   }
-  report.body = measure_body(figure);
+  report.body = measure_body(*figure);
   const LandmarkSet landmarks(measured);
-  const Figure standing(measured, standard_posture(measured, parameters.betas));
-  report.dimensions = measure_dimensions(standing, figure, landmarks, fit_errors(registration));
-  report.landmarks = landmark_reports(registration, figure, landmarks, surface ? &*surface : nullptr);
-  report.sections = wanted_sections(figure, arguments);
+  const Figure standing(measured, standard_posture(measured, parameters.betas), offsets);
+  report.dimensions = measure_dimensions(standing, *figure, landmarks, fit_errors(registration));
+  report.landmarks = landmark_reports(registration, *figure, landmarks, surface ? &*surface : nullptr);
+  report.sections = wanted_sections(*figure, arguments);
   context.interrupt.check();
 
   const std::string json = measurements_json(report, JsonStyle::pretty);
@@ -164,8 +193,8 @@ ExitStatus run_measure(const MeasureArguments& arguments, const CliContext& cont
   const auto path = [&](const char* name) { return (std::filesystem::path(arguments.out) / name).string(); };
   write_file(path("measurements.csv"), measurements_csv(report));
   write_file(path("measurements.json"), json);
-  const MeasuredRegistration everything{registration, report, figure,
-                                        standing,     state,  surface ? &*surface : nullptr};
+  const MeasuredRegistration everything{
+      registration, report, *figure, standing, state, offsets, surface ? &*surface : nullptr};
   for (const std::string& format : arguments.exports) {
     for (const ExportedFile& file : export_files(format, everything))
       write_file(path(file.name.c_str()), file.content);

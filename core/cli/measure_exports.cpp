@@ -52,6 +52,7 @@ ExportedBody exported_body(const MeasuredRegistration& m) {
                     0,
                     m.report.body.mass_kg};
   body.stature_m = m.standing.vertices.row(1).maxCoeff() - m.standing.vertices.row(1).minCoeff();
+  body.rest_offsets = m.rest_offsets;
   for (const LandmarkReport& landmark : m.report.landmarks)
     body.landmarks.push_back({landmark.name, landmark.body_m});
   return body;

@@ -18,6 +18,7 @@ struct MeasuredRegistration {
   const Figure& scanned;   ///< as registered, body frame
   const Figure& standing;  ///< in the standard posture
   const BodyState& state;
+  const Points3d& rest_offsets;       ///< 3 x V or empty
   const SurfaceMeasurement* surface;  ///< null without --scan
 };
 

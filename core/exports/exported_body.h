@@ -22,6 +22,7 @@ struct ExportedBody {
   std::vector<NamedPoint> landmarks;         ///< body frame, metres
   double stature_m = 0;
   double mass_kg = 0;
+  Points3d rest_offsets = Points3d(3, 0);  ///< added to the shaped vertices before posing; or empty
 };
 
 }  // namespace vitruvian

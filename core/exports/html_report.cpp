@@ -140,7 +140,7 @@ std::string to_html_report(const ReportContent& content) {
       "1px solid "
       "#ddd;vertical-align:top}.n{text-align:right;white-space:nowrap}figure{display:inline-block;width:45%;"
       "margin:0 "
-      "2%;text-align:center}svg{width:100%;height:auto}.tape{fill:none;stroke:#c2185b;stroke-width:1.4}"
+      "2%;text-align:center}svg{width:100%;height:34em}.tape{fill:none;stroke:#c2185b;stroke-width:1.4}"
       "path{stroke-width:.4}tr{break-inside:avoid}</style>\n<h1>" +
       escaped(content.title) + "</h1>\n<p><b>" + escaped(content.verdict) + "</b></p>\n<ul>";
   for (const std::string& fact : content.facts) out += "<li>" + escaped(fact) + "</li>";

@@ -103,6 +103,7 @@ std::string to_skinned_glb(const ExportedBody& body) {
   const Skeleton skeleton = pose_skeleton(model, body.state);
   VertexMatrix<double> rest;
   shape_vertices(model, body.state.betas, rest);
+  if (body.rest_offsets.cols() == rest.cols()) rest += body.rest_offsets;
   add_correctives(model, body.state, rest);
 
   GlbParts parts;

@@ -1,8 +1,11 @@
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "body/forward.h"
 #include "cli/wiring.h"
 #include "core/cli/cli_fixture.h"
+#include "pipeline/report.h"
 #include "pipeline/result_json.h"
 
 namespace vitruvian {
@@ -53,6 +56,64 @@ TEST_F(MeasureCommand, WritesBothFiles) {
   const std::string first = read("m/measurements.json");
   EXPECT_EQ(run({"measure", registration, "--section", "left_arm:t=0.5", "--profile", "head:4"}), 0);
   EXPECT_EQ(out(), first) << "without --out the JSON goes to stdout";
+}
+
+TEST_F(MeasureCommand, WritesDimensionsLandmarksAndExports) {
+  const std::string registration = write_registration(-1);
+  ASSERT_EQ(run({"measure", registration, "--out", path("m"), "--export",
+                 "glb,npz,smpl,trc,landmarks,ply,obj,html"}),
+            0)
+      << error();
+  const json result = json::parse(read("m/measurements.json"));
+  EXPECT_GT(result["dimensions"].size(), 100u);
+  EXPECT_GE(result["landmarks"].size(), 70u);
+  for (const json& row : result["dimensions"]) {
+    EXPECT_TRUE(row["posture"] == "standard" || row["posture"] == "scanned");
+    EXPECT_GT(row["value_mm"], 0);
+    EXPECT_GT(row["uncertainty_mm"], 0);
+  }
+  // Every row of the tidy table has seven fields, commas in quotes not counted, and an id of its own.
+  std::istringstream table(read("m/measurements.csv"));
+  std::set<std::string> ids;
+  for (std::string line; std::getline(table, line);) {
+    int fields = 1;
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"') quoted = !quoted;
+      if (c == ',' && !quoted) ++fields;
+    }
+    EXPECT_EQ(fields, 7) << line;
+    EXPECT_TRUE(ids.insert(line.substr(0, line.find(','))).second) << line;
+  }
+  for (const char* name : {"body.glb", "amass.npz", "body.smpl", "markers.trc", "markers_subject.json",
+                           "landmarks.csv", "segments.ply", "segments.obj", "report.html"}) {
+    EXPECT_GT(read(std::string("m/") + name).size(), 30u) << name;
+  }
+  EXPECT_FALSE(exists("m/errors.ply")) << "no scan, no errors";
+  EXPECT_EQ(run({"measure", registration, "--export", "glb"}), 2) << "needs --out";
+  EXPECT_EQ(run({"measure", registration, "--out", path("m"), "--export", "fbx"}), 2);
+  EXPECT_EQ(run({"measure", registration, "--scan", write_scan("other.ply")}), 2) << "not the scan";
+  EXPECT_TRUE(said("sha256"));
+  EXPECT_EQ(run({"measure", registration, "--scan", path("none.ply")}), 3);
+}
+
+TEST_F(MeasureCommand, VertexOffsetsCount) {
+  const BodyModel body = open_body_("");
+  Registration r =
+      parse_registration(read(std::filesystem::path(write_registration()).filename().string()), "r");
+  r.parameters->offsets_file = "offsets.npz";
+  // Everything 2 % larger in depth.
+  const Points3f offsets = Eigen::Vector3f(0, 0, 0.02f).asDiagonal() * body.v_template;
+  write("d/offsets.npz", offsets_npz(offsets));
+  const std::string detailed = write("d/registration.json", registration_json(r, "1", JsonStyle::pretty));
+  ASSERT_EQ(run({"measure", detailed}), 0) << error();
+  const double larger = json::parse(out())["body"]["volume_cm3"];
+  ASSERT_EQ(run({"measure", path("registration.json")}), 0);
+  EXPECT_NEAR(larger / json::parse(out())["body"]["volume_cm3"].get<double>(), 1.02, 1e-4);
+  write("d/offsets.npz", offsets_npz(offsets.leftCols(9)));
+  EXPECT_EQ(run({"measure", detailed}), 3);
+  r.parameters->offsets_file = "../offsets.npz";
+  EXPECT_EQ(run({"measure", write("d/registration.json", registration_json(r, "1", JsonStyle::pretty))}), 3);
 }
 
 TEST_F(MeasureCommand, RefusesWhatItCannotMeasure) {
