@@ -34,7 +34,8 @@ def registration(body, betas):
         "timing_ms": dict.fromkeys(
             ["read", "align", "project", "detect", "pose", "fit", "refine", "detail", "write", "total"], 0),
         "settings": {"method": "ours", "align": "auto", "views": 8, "min_visibility": 0, "init": "auto",
-                     "solver": "fast", "gender": "neutral", "betas": 0, "units": "auto", "up": "auto",
+                     "solver": "fast", "iterations": 1, "adam_iterations": 0, "one_directional": False, "chunk": 0,
+                     "gender": "neutral", "betas": 0, "units": "auto", "up": "auto",
                      "front": "auto", "detail": "off", "threads": 1, "seed": 1},
     }
 
