@@ -19,6 +19,7 @@ float weight_of(float squared, float agreement, float sigma) {
 struct Foot {
   Vec3f position, normal;
   bool found;
+  int vertex = 0;  ///< of the scan, the nearest one
 };
 
 Foot foot_on_scan(const ScanSurface& surface, const Vec3f& x) {
@@ -31,16 +32,19 @@ Foot foot_on_scan(const ScanSurface& surface, const Vec3f& x) {
     }
     const float length = normal.norm();
     if (!(length > 1e-6f)) return {Vec3f::Zero(), Vec3f::Zero(), false};
-    return {point.position, normal / length, true};
+    int corner;
+    point.barycentric.maxCoeff(&corner);
+    return {point.position, normal / length, true, surface.faces(corner, point.face)};
   }
   const Neighbour near = surface.tree.nearest(x);
   return {surface.points.col(near.index), surface.normals.col(near.index),
-          near.squared_distance < kSearchLimit * kSearchLimit};
+          near.squared_distance < kSearchLimit * kSearchLimit, near.index};
 }
 
 [[gnu::noinline]] void match_vertices(const FitModel& model, const PosedModel& posed,
-                                      const ScanSurface& surface, float sigma, float mean_area,
-                                      std::vector<Correspondence>& matches, const Execution& execution) {
+                                      const ScanSurface& surface, const RegionLabels& regions, float sigma,
+                                      float mean_area, std::vector<Correspondence>& matches,
+                                      const Execution& execution) {
   matches.resize(model.body.vertex_count());
   execution.parallel_for(model.body.vertex_count(), 256, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t v = begin; v < end; ++v) {
@@ -49,8 +53,9 @@ Foot foot_on_scan(const ScanSurface& surface, const Vec3f& x) {
       const Vec3f error = x - foot.position;
       const float area = std::clamp(model.body.vertex_area[v] / mean_area, 0.2f, 3.0f);
       const float weight =
-          foot.found ? area * weight_of(error.squaredNorm(), foot.normal.dot(posed.normals.col(v)), sigma)
-                     : 0;
+          foot.found && regions.of_point(foot.vertex) == regions.of_vertex(v)
+              ? area * weight_of(error.squaredNorm(), foot.normal.dot(posed.normals.col(v)), sigma)
+              : 0;
       matches[v] = {static_cast<int>(v), weight, 0, foot.normal, error};
     }
   });
@@ -76,6 +81,10 @@ Foot foot_on_scan(const ScanSurface& surface, const Vec3f& x) {
           foot.barycentric.maxCoeff(&corner);
           const int v = model.body.faces(corner, foot.face);
           const Vec3f error = foot.position - y;
+          if (samples.regions.of_point(i) != samples.regions.of_vertex(v)) {
+            matches[i] = {v, 0, 0, normal, error};
+            continue;
+          }
           matches[i] = {v, weight_of(error.squaredNorm(), normal.dot(posed.normals.col(v)), sigma), 0, normal,
                         error};
         }
@@ -85,7 +94,8 @@ Foot foot_on_scan(const ScanSurface& surface, const Vec3f& x) {
 }  // namespace
 
 void refine_fit(const FitModel& model, const ScanSurface& surface, const ScanTarget& samples,
-                const RefineSettings& settings, BodyState& state, const Execution& execution) {
+                const RefineSettings& settings, BodyState& state, const Execution& execution,
+                const RegionLabels& regions) {
   NormalEquations equations(model);
   PosedModel posed;
   std::vector<Correspondence> of_model, of_scan;
@@ -95,7 +105,7 @@ void refine_fit(const FitModel& model, const ScanSurface& surface, const ScanTar
     posed.update(model, state);
     const double progress = static_cast<double>(i) / std::max(1, settings.iterations - 1);
     const double sigma = settings.sigma_begin * std::pow(settings.sigma_end / settings.sigma_begin, progress);
-    match_vertices(model, posed, surface, static_cast<float>(sigma), mean_area, of_model, execution);
+    match_vertices(model, posed, surface, regions, static_cast<float>(sigma), mean_area, of_model, execution);
     match_samples(model, posed, samples, settings.scan_samples, static_cast<float>(sigma), of_scan,
                   execution);
     const BodyJacobian<float> jacobian(model.body, model.groups, state, posed.skeleton, posed.rest);

@@ -18,7 +18,9 @@ struct RefineSettings {
 /// Last Gauss-Newton steps against the surface itself instead of samples of it: every template vertex to the
 /// closest point on the scan's triangles (local plane for clouds), and scan samples to the closest point on
 /// the model's triangles; point-to-plane, area-weighted, robust.
+/// @param regions  labels of the scan's own vertices; pairs that cross labels do not count.
 void refine_fit(const FitModel& model, const ScanSurface& surface, const ScanTarget& samples,
-                const RefineSettings& settings, BodyState& state, const Execution& execution);
+                const RefineSettings& settings, BodyState& state, const Execution& execution,
+                const RegionLabels& regions = {});
 
 }  // namespace vitruvian

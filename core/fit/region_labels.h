@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace vitruvian {
@@ -10,6 +11,11 @@ struct RegionLabels {
   int count = 1;              ///< labels run from 0 to count - 1
   std::vector<int> scan;      ///< a label a scan point; empty: all 0
   std::vector<int> vertices;  ///< a label a template vertex; empty: all 0
+
+  int of_point(std::ptrdiff_t i) const { return scan.empty() ? 0 : scan[static_cast<std::size_t>(i)]; }
+  int of_vertex(std::ptrdiff_t v) const {
+    return vertices.empty() ? 0 : vertices[static_cast<std::size_t>(v)];
+  }
 };
 
 }  // namespace vitruvian

@@ -20,15 +20,19 @@ float robust_weight(float squared_distance, float normal_agreement, float sigma)
 
 /// Samples of the model matched to the scan.
 [[gnu::noinline]] void match_model(const FitModel& model, const PosedModel& posed, const ScanTarget& scan,
-                                   const KdTree& tree, const FitStage& stage, float sigma,
-                                   std::vector<Correspondence>& matches, const Execution& execution) {
+                                   const FitStage& stage, float sigma, std::vector<Correspondence>& matches,
+                                   const Execution& execution) {
   matches.resize(std::min<std::size_t>(stage.samples, model.order.size()));
   execution.parallel_for(static_cast<std::ptrdiff_t>(matches.size()), 256,
                          [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
                            for (std::ptrdiff_t i = begin; i < end; ++i) {
                              const int v = model.order[i];
                              const Vec3f x = posed.vertices.col(v), n = posed.normals.col(v);
-                             const int y = tree.nearest(x, n).index;
+                             const int y = scan.nearest(v, x, n, stage.normals_in_search).index;
+                             if (y < 0) {
+                               matches[i] = {v, 0, 0, n, Vec3f::Zero()};
+                               continue;
+                             }
                              const Vec3f error = x - scan.points.col(y);
                              const Vec3f normal = scan.normals.col(y);
                              const float weight = robust_weight(error.squaredNorm(), normal.dot(n), sigma);
@@ -38,15 +42,20 @@ float robust_weight(float squared_distance, float normal_agreement, float sigma)
 }
 
 /// Samples of the scan matched to the model.
-[[gnu::noinline]] void match_scan(const PosedModel& posed, const ScanTarget& scan, const KdTree& model_tree,
-                                  const FitStage& stage, float sigma, std::vector<Correspondence>& matches,
-                                  const Execution& execution) {
+[[gnu::noinline]] void match_scan(const PosedModel& posed, const ScanTarget& scan,
+                                  const std::vector<KdTree>& model_trees, const FitStage& stage, float sigma,
+                                  std::vector<Correspondence>& matches, const Execution& execution) {
   matches.resize(std::min<std::size_t>(stage.samples, scan.points.cols()));
   execution.parallel_for(
       static_cast<std::ptrdiff_t>(matches.size()), 256, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
         for (std::ptrdiff_t i = begin; i < end; ++i) {
           const Vec3f y = scan.points.col(i), normal = scan.normals.col(i);
-          const int v = model_tree.nearest(y, normal).index;
+          const KdTree& tree = model_trees[static_cast<std::size_t>(scan.regions.of_point(i))];
+          if (tree.empty()) {
+            matches[i] = {0, 0, 0, normal, Vec3f::Zero()};
+            continue;
+          }
+          const int v = tree.nearest(y, normal).index;
           const Vec3f error = posed.vertices.col(v) - y;
           const float weight = robust_weight(error.squaredNorm(), normal.dot(posed.normals.col(v)), sigma);
           matches[i] = {v, weight, static_cast<float>(stage.isotropy), normal, error};
@@ -54,12 +63,29 @@ float robust_weight(float squared_distance, float normal_agreement, float sigma)
       });
 }
 
-KdTree model_tree(const FitModel& model, const PosedModel& posed, const FitStage& stage) {
+/// Trees of the model's vertices, one a label.
+std::vector<KdTree> model_trees(const FitModel& model, const PosedModel& posed, const RegionLabels& regions,
+                                const FitStage& stage) {
+  const auto tree_of = [&](std::span<const int> subset) {
+    return stage.normals_in_search ? KdTree(posed.vertices, posed.normals, ScanTarget::kNormalWeight, subset)
+                                   : KdTree(posed.vertices, subset);
+  };
   const std::size_t size =
       std::min<std::size_t>(model.order.size(), std::max(stage.samples, kLeastModelTree));
-  const std::span<const int> subset(model.order.data(), size);
-  return stage.normals_in_search ? KdTree(posed.vertices, posed.normals, ScanTarget::kNormalWeight, subset)
-                                 : KdTree(posed.vertices, subset);
+  std::vector<KdTree> trees;
+  if (regions.count == 1) {
+    trees.push_back(tree_of({model.order.data(), size}));
+    return trees;
+  }
+  for (int label = 0; label < regions.count; ++label) {
+    // A painted region is small: all of its vertices.
+    std::vector<int> members;
+    for (std::size_t i = 0; i < (label == 0 ? size : model.order.size()); ++i) {
+      if (regions.of_vertex(model.order[i]) == label) members.push_back(model.order[i]);
+    }
+    trees.push_back(members.empty() ? KdTree() : tree_of(members));
+  }
+  return trees;
 }
 
 double mean_of(const std::vector<float>& values) {
@@ -102,16 +128,15 @@ void fit_surface(const FitModel& model, const ScanTarget& scan, const FitSchedul
   PosedModel posed;
   std::vector<Correspondence> of_model, of_scan;
   for (const FitStage& stage : schedule.stages) {
-    const KdTree& tree = stage.normals_in_search ? scan.by_position_and_normal : scan.by_position;
     for (int i = 0; i < stage.iterations; ++i) {
       execution.check();
       posed.update(model, state);
       const double sigma =
           stage.sigma_begin * std::pow(stage.sigma_end / stage.sigma_begin,
                                        static_cast<double>(i) / std::max(1, stage.iterations));
-      match_model(model, posed, scan, tree, stage, static_cast<float>(sigma), of_model, execution);
-      match_scan(posed, scan, model_tree(model, posed, stage), stage, static_cast<float>(sigma), of_scan,
-                 execution);
+      match_model(model, posed, scan, stage, static_cast<float>(sigma), of_model, execution);
+      match_scan(posed, scan, model_trees(model, posed, scan.regions, stage), stage,
+                 static_cast<float>(sigma), of_scan, execution);
       const BodyJacobian<float> jacobian(model.body, model.groups, state, posed.skeleton, posed.rest);
       equations.clear();
       const double unit = 1 / (sigma * sigma);
@@ -142,13 +167,18 @@ FitScore score_fit(const FitModel& model, const ScanTarget& scan, const BodyStat
   const int model_count = std::min<int>(samples, static_cast<int>(model.order.size()));
   for (int i = 0; i < model_count; ++i) {
     const int v = model.order[i];
-    const Neighbour y = scan.by_position.nearest(posed.vertices.col(v));
+    const Neighbour y = scan.nearest(v, posed.vertices.col(v), Vec3f::Zero(), false);
+    if (y.index < 0) continue;
     of_model.push_back(std::sqrt(y.squared_distance));
     opposed += scan.normals.col(y.index).dot(posed.normals.col(v)) < 0;
   }
-  const KdTree tree(posed.vertices);
+  FitStage whole{};
+  whole.samples = model.body.vertex_count();
+  const std::vector<KdTree> trees = model_trees(model, posed, scan.regions, whole);
   const int scan_count = std::min<int>(samples, static_cast<int>(scan.points.cols()));
   for (int i = 0; i < scan_count; ++i) {
+    const KdTree& tree = trees[static_cast<std::size_t>(scan.regions.of_point(i))];
+    if (tree.empty()) continue;
     const Neighbour v = tree.nearest(scan.points.col(i));
     of_scan.push_back(std::sqrt(v.squared_distance));
     opposed += scan.normals.col(i).dot(posed.normals.col(v.index)) < 0;

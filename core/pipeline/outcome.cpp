@@ -89,8 +89,8 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
   BodyState state = input.fit.state;
   if (input.refine) {
     const ScanTarget samples = ScanTarget::sample(placed.points(), input.scan.scan.faces, placed.normals(),
-                                                  kRefineSamples, input.settings.seed + 17);
-    refine_fit(input.fit_model, surface, samples, RefineSettings(), state, execution);
+                                                  kRefineSamples, input.settings.seed + 17, input.regions);
+    refine_fit(input.fit_model, surface, samples, RefineSettings(), state, execution, input.regions);
   }
 
   // The result is what the double-precision forward model says, so that it can be rebuilt from the

@@ -22,6 +22,7 @@ struct OutcomeInput {
   const HypothesisResult& fit;
   const std::vector<LandmarkTarget>& targets;  ///< what the fit was to meet, body frame
   const std::vector<Keypoint>& keypoints;      ///< 22, body frame
+  const RegionLabels& regions;                 ///< of the scan's vertices
   UnitCandidate unit{};
   std::string unit_note{};
   std::string method{};

@@ -200,7 +200,7 @@ RegistrationPipeline::Candidate RegistrationPipeline::fit_candidate(std::size_t 
     return candidate;
   }
   const ScanTarget target =
-      ScanTarget::sample(points, scan_->scan.faces, normals, kFitSamples, settings_.seed);
+      ScanTarget::sample(points, scan_->scan.faces, normals, kFitSamples, settings_.seed, regions_);
   const std::vector<LandmarkTarget>& targets = candidate.seen.targets;
   if (start_is_given(settings_)) {
     candidate.fit = fit_from_state(*fit_model_, target, candidate.initial, to_string(settings_.init), targets,
@@ -267,8 +267,8 @@ Registration RegistrationPipeline::finish() {
   clock_.enter(&Timing::refine);
   execution_.progress("refine", 0);
   const Candidate& best = *search_.best;
-  OutcomeInput input{models_,  *fit_model_,       settings_,          *scan_, best.body_from_scan,
-                     best.fit, best.seen.targets, best.seen.keypoints};
+  OutcomeInput input{models_,  *fit_model_,       settings_,           *scan_,  best.body_from_scan,
+                     best.fit, best.seen.targets, best.seen.keypoints, regions_};
   input.refine = settings_.solver == SolverKind::fast;
   input.unit = best.unit;
   input.unit_note = units_.note;
