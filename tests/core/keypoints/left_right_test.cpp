@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <numbers>
 #include <set>
 
 #include "base/error.h"
@@ -37,6 +39,17 @@ TEST(LeftRight, CanonicalFrameIsAsAgreed) {
   EXPECT_EQ(Vec3d(rotation * Vec3d::UnitY()), Vec3d(0, 0, 1));
   EXPECT_EQ(Vec3d(rotation * Vec3d::UnitZ()), Vec3d(0, 1, 0));
   EXPECT_EQ(Vec3d(rotation * Vec3d::UnitX()), Vec3d(-1, 0, 0));
+}
+
+// Section 3.1.1: a half turn about (0, 1, 1) / sqrt 2, or pi/2 about X and then pi about Z.
+TEST(LeftRight, TheRootSeedIsTheCanonicalFrame) {
+  const double pi = std::numbers::pi;
+  const Vec3d seed(0, pi / std::numbers::sqrt2, pi / std::numbers::sqrt2);
+  const Mat3d rotation = Eigen::AngleAxisd(seed.norm(), seed.normalized()).toRotationMatrix();
+  EXPECT_TRUE(rotation.isApprox(canonical_from_body_rotation(), 1e-12));
+  const Mat3d in_two_turns =
+      (Eigen::AngleAxisd(pi, Vec3d::UnitZ()) * Eigen::AngleAxisd(pi / 2, Vec3d::UnitX())).toRotationMatrix();
+  EXPECT_TRUE(in_two_turns.isApprox(rotation, 1e-12));
 }
 
 TEST(LeftRight, EveryPairedLandmarkIsInThePairsOnce) {
