@@ -136,10 +136,10 @@ TEST_F(RegisterCommand, WrongUsageGivesStatus2BeforeAnyWork) {
                                              {"register", scan},
                                              {"register", "--out", path("out")},
                                              {"register", scan, "--out", path("out"), "--up", "w"},
-                                             {"register", scan, "--out", path("out"), "--regions", "r.json"},
-                                             {"register", scan, "--out", path("out"), "--method", "paper"},
+                                             {"register", scan, "--out", path("out"), "--crop", "c.json"},
+                                             {"register", scan, "--out", path("out"), "--iterations", "9"},
                                              {"register", path(""), "--out", path("out")},
-                                             {"measure", "r.json"},
+                                             {"measure"},
                                              {"nonsense"},
                                              {}}) {
     EXPECT_EQ(run(arguments), 2);
@@ -148,8 +148,8 @@ TEST_F(RegisterCommand, WrongUsageGivesStatus2BeforeAnyWork) {
   }
   EXPECT_FALSE(opened);
   EXPECT_FALSE(exists("out"));
-  run({"register", scan, "--out", path("out"), "--regions", "r.json"});
-  EXPECT_TRUE(said("--regions: not yet available")) << error();
+  run({"register", scan, "--out", path("out"), "--crop", "c.json"});
+  EXPECT_TRUE(said("--crop: not yet available")) << error();
 }
 
 TEST_F(RegisterCommand, UnusableModelGivesStatus2) {
