@@ -63,19 +63,21 @@ void add_method_options(CLI::App& command, RegisterArguments& a, Pending& pendin
 
 void add_model_options(CLI::App& command, RegisterArguments& a) {
   command.option_defaults()->group("Body model");
-  command.add_option("--model", a.model_file, "body model file (default: the bundled body)")
+  command
+      .add_option("--model", a.model_file,
+                  "body model: SMPL, SMPL+H, SMPL-X or STAR, .pkl or .npz (default: the bundled body)")
       ->type_name("FILE");
   add_choice(command, "--gender", a.settings.gender, "which population the shape is expected from");
-  command.add_option("--betas", a.settings.betas, "number of shape components (default: all)")
+  command
+      .add_option("--betas", a.settings.betas,
+                  "number of shape components (default: all, of --model at most 16)")
       ->check(CLI::Range(1, 10000).description(""))
       ->type_name("N");
-  command
-      .add_option_function<std::string>(
-          "--dmpl", [](const std::string&) {}, "soft-tissue model")
+  command.add_option("--dmpl", a.dmpl_file, "soft-tissue model (DMPL .npz) for SMPL or SMPL+H")
       ->type_name("FILE");
   command
-      .add_option_function<std::string>(
-          "--prior", [](const std::string&) {}, "pose prior file")
+      .add_option("--prior", a.prior_file,
+                  "pose prior: a VPoser v2 checkpoint in place of the bundled autoencoder, or a .vpp file")
       ->type_name("FILE");
 }
 
@@ -124,7 +126,7 @@ void add_output_options(CLI::App& command, RegisterArguments& a) {
 }
 
 void settle_register(const CLI::App& command, const Pending& pending, RegisterArguments& a) {
-  for (const char* name : {"--dmpl", "--prior", "--crop", "--project"}) {
+  for (const char* name : {"--crop", "--project"}) {
     if (command.count(name) > 0) a.not_available.emplace_back(name);
   }
   // The method's stages, but for those that were given.

@@ -23,6 +23,8 @@ struct RegisterArguments {
   std::string align_file;
   std::string keypoints_file;
   std::string regions_file;
+  std::string dmpl_file;   ///< empty: no soft tissue
+  std::string prior_file;  ///< empty: the bundled pose prior
   MeshFormat format = MeshFormat::ply;
   bool quiet = false;
   bool json = false;

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "cli/calibration_cache.h"
 #include "cli/paths.h"
 #include "cli/run_cli.h"
 #include "cli/wiring.h"
@@ -44,11 +45,12 @@ int main(int count, char** values) {
   const char* data = std::getenv("VITRUVIAN_DATA");
   const std::vector<std::string> folders =
       vitruvian::data_folders(program_folder(values[0]), data ? data : "");
+  const std::string cache = vitruvian::cache_folder(std::getenv("XDG_CACHE_HOME"), std::getenv("HOME"));
   const vitruvian::CliContext context{std::cout,
                                       std::cerr,
                                       isatty(STDERR_FILENO) == 1,
                                       interrupt_switch,
-                                      vitruvian::native_register(folders),
+                                      vitruvian::native_register(folders, cache),
                                       vitruvian::native_body(folders)};
   return static_cast<int>(vitruvian::run_cli(arguments, context));
 }

@@ -1,48 +1,52 @@
 #include "cli/wiring.h"
 
+#include <algorithm>
+#include <iostream>
 #include <memory>
+#include <optional>
+#include <thread>
 
+#include "cli/model_loading.h"
 #include "cli/opencv_networks.h"
 #include "cli/paths.h"
-#include "io/file.h"
-#include "keypoints/landmark_calibration.h"
 #include "pipeline/check_settings.h"
 #include "pipeline/pipeline.h"
+#include "smpl/smpl_model.h"
 
 namespace vitruvian {
-namespace {
-
-BodyModel load_body(const std::string& model_file, const std::vector<std::string>& folders) {
-  const std::string path = model_file.empty() ? find_data_file(folders, "body.vbm") : model_file;
-  return read_body_model(FileBytes(path).bytes(), path);
-}
-
-Models load_models(const RegisterArguments& arguments, const std::vector<std::string>& folders) {
-  Models models;
-  models.body = load_body(arguments.model_file, folders);
-  const std::string prior = find_data_file(folders, "pose_prior.vpp");
-  models.prior = read_pose_prior(FileBytes(prior).bytes(), prior);
-  const std::string landmarks = find_data_file(folders, "landmarks.json");
-  const FileBytes text(landmarks);
-  models.landmarks = landmarks_from_json(
-      std::string(reinterpret_cast<const char*>(text.bytes().data()), text.bytes().size()), landmarks);
-  return models;
-}
-
-}  // namespace
 
 BodyOpener native_body(std::vector<std::string> folders) {
   return [folders = std::move(folders)](const std::string& model_file) {
-    return load_body(model_file, folders);
+    ModelFiles files;
+    files.model = model_file;
+    files.betas = kEveryBeta;
+    return load_body_model(files, folders);
   };
 }
 
-RegisterFactory native_register(std::vector<std::string> folders) {
-  return [folders = std::move(folders)](const RegisterArguments& arguments) -> RegisterFunction {
-    const auto models = std::make_shared<const Models>(load_models(arguments, folders));
-    check_settings(arguments.settings, *models);
+RegisterFactory native_register(std::vector<std::string> folders, const std::string& cache) {
+  return [folders = std::move(folders),
+          cache = CalibrationCache(cache)](const RegisterArguments& arguments) -> RegisterFunction {
     const std::string landmarks = find_data_file(folders, "blazepose_landmarks.opencv.onnx");
     const std::string detector = find_data_file(folders, "blazepose_detector.opencv.onnx");
+    const int threads = arguments.settings.threads > 0
+                            ? arguments.settings.threads
+                            : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    // Opened only for a model that was never looked at.
+    std::optional<OpenCvNetworks> eyes;
+    const Execution setup(threads);
+    const auto models = std::make_shared<const Models>(load_models(
+        {arguments.model_file, arguments.dmpl_file, arguments.prior_file, arguments.settings.betas}, folders,
+        cache,
+        [&](const NetworkRequest& request) {
+          if (!eyes) {
+            if (!arguments.quiet) std::cerr << "learning where landmarks lie on this model (once)\n";
+            eyes.emplace(landmarks, detector, threads);
+          }
+          return eyes->run(request);
+        },
+        setup));
+    check_settings(arguments.settings, *models);
     return [=](Scan scan, const Settings& settings, const Execution& execution, double read_ms) {
       OpenCvNetworks networks(landmarks, detector, settings.threads);
       return register_scan(

@@ -11,6 +11,10 @@ namespace vitruvian {
 namespace {
 
 constexpr std::uint32_t kOrderSeed = 7;
+/// What the derivatives go without; the default body has no more than this.
+constexpr int kMostCorrectives = 4;
+constexpr Index kFewWeights = 4;
+constexpr float kLeastWeight = 1e-3f;
 
 /// Marginal of the prior over its first components: the covariance is cut, not the precision.
 ShapePrior cut(const ShapePrior& prior, int betas) {
@@ -24,8 +28,8 @@ ShapePrior cut(const ShapePrior& prior, int betas) {
 FitModel::FitModel(const BodyModel& body_model, const PosePrior& pose_prior, Gender gender, int beta_limit)
     : body(body_model),
       prior(pose_prior),
-      betas(beta_limit > 0 ? std::min(beta_limit, body_model.beta_count()) : body_model.beta_count()),
-      groups(body_model) {
+      betas(beta_limit > 0 && beta_limit < body_model.shape_count() ? beta_limit : body_model.beta_count()),
+      groups(body_model, kMostCorrectives, body_model.skin_joint.rows() > kFewWeights ? kLeastWeight : 0) {
   shape_prior = cut(body.prior(gender), betas);
   Random random(kOrderSeed);
   std::vector<std::pair<double, int>> keys(body.vertex_count());

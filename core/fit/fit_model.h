@@ -18,7 +18,8 @@ struct FitModel {
   /// hold most vertices but little area).
   std::vector<int> order;
 
-  /// @param betas  0 or more than the model has: all of them.
+  /// @param betas  shape components to fit (expression and soft tissue are then left out); 0 or as many as
+  /// the model has: all, expression and soft tissue included.
   FitModel(const BodyModel& body, const PosePrior& prior, Gender gender, int betas);
 
   int unknowns() const { return 3 + 3 * body.joint_count() + betas; }

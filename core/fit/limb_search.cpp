@@ -29,12 +29,22 @@ Mat3d rotation_of(const Vec3d& axis_angle) {
   return angle > 0 ? Eigen::AngleAxisd(angle, axis_angle / angle).toRotationMatrix() : Mat3d::Identity();
 }
 
-/// Vertices of the limb in a new pose of its root and middle joint.
+/// A joint and all below it, parents first.
+std::vector<int> joints_from(const FitModel& model, int joint) {
+  std::vector<int> below;
+  for (int j = 0; j < model.body.joint_count(); ++j) {
+    if (model.groups.ancestors[j] >> joint & 1) below.push_back(j);
+  }
+  return below;
+}
+
+/// Vertices of the limb in a new pose of its root and middle joint; `moved` are the limb's joints.
 [[gnu::noinline]] void pose_limb(const FitModel& model, const BodyState& state, const PosedModel& posed,
-                                 const LimbChain& limb, std::span<const int> vertices, Points3f& result) {
+                                 std::span<const int> moved, std::span<const int> vertices,
+                                 Points3f& result) {
   const BodyModel& body = model.body;
   Skeleton skeleton = posed.skeleton;
-  for (const int j : {limb.root, limb.middle, limb.end, limb.tip}) {
+  for (const int j : moved) {
     const int p = body.parent[j];
     skeleton.global[j] = skeleton.global[p] * state.rotation[j];
     skeleton.joints.col(j) = skeleton.joints.col(p) +
@@ -100,13 +110,13 @@ std::vector<BodyState> search_limb(const FitModel& model, const ScanTarget& scan
   const auto lower = [&](Index c) { return rotation_of(library.col(c).tail<3>()); };
   std::vector<std::pair<double, Index>> ranking;
   BodyState candidate = state;
-  candidate.rotation[limb.end].setIdentity();
-  candidate.rotation[limb.tip].setIdentity();
+  const std::vector<int> moved = joints_from(model, limb.root);
+  for (const int j : joints_from(model, limb.end)) candidate.rotation[j].setIdentity();
   Points3f points;
   const auto cost = [&](Index c, std::span<const int> vertices, std::span<const Vec3f> targets) {
     candidate.rotation[limb.root] = upper(c);
     candidate.rotation[limb.middle] = lower(c);
-    pose_limb(model, candidate, posed, limb, vertices, points);
+    pose_limb(model, candidate, posed, moved, vertices, points);
     return cost_of(points, scan, targets, unexplained.size());
   };
   const auto head = [](auto& list, int count) {

@@ -6,7 +6,8 @@
 
 namespace vitruvian {
 
-/// The four limbs in the order of PosePrior::limbs.
+/// The four limbs in the order of PosePrior::limbs; SMPL joints, which are also their segments. Fingers
+/// follow the tip.
 struct LimbChain {
   int root, middle, end, tip;  ///< shoulder, elbow, wrist, hand; or hip, knee, ankle, foot
 };

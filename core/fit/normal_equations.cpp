@@ -159,7 +159,7 @@ void NormalEquations::add_pose_prior(const BodyState& state, const PosedModel& p
   }
   const Eigen::Map<const Eigen::VectorXd> theta(pose.data() + 3, numbers);
   if (gaussian > 0) {
-    const double c = gaussian / numbers;
+    const double c = gaussian / PosePrior::kSize;
     const Eigen::VectorXd pull = model_.prior.precision * (theta - model_.prior.mean);
     for (int a = 1; a < joints; ++a) {
       gradient_.segment<3>(3 + 3 * a) += c * by_increment[a].transpose() * pull.segment<3>(3 * (a - 1));
@@ -171,7 +171,7 @@ void NormalEquations::add_pose_prior(const BodyState& state, const PosedModel& p
     }
   }
   if (limits > 0) {
-    const double c = limits / numbers / (kLimitScale * kLimitScale);
+    const double c = limits / PosePrior::kSize / (kLimitScale * kLimitScale);
     for (int i = 0; i < numbers; ++i) {
       const double excess = theta[i] < model_.prior.limit_low[i]    ? theta[i] - model_.prior.limit_low[i]
                             : theta[i] > model_.prior.limit_high[i] ? theta[i] - model_.prior.limit_high[i]

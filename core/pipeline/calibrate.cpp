@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kShapeSpread = 0.7;
 constexpr int kViews = 8;
+constexpr int kSmplJoints = 24;
 
 /// A pose the prior thinks possible: decoded from the autoencoder, or drawn from the Gaussian, inside the
 /// joint limits.
@@ -33,7 +35,8 @@ Points3d draw_pose(const BodyModel& body, const PosePrior& prior, Random& random
   }
   numbers = numbers.cwiseMax(prior.limit_low).cwiseMin(prior.limit_high);
   Points3d pose = Points3d::Zero(3, joints);
-  pose.rightCols(joints - 1) = Eigen::Map<const Points3d>(numbers.data(), 3, joints - 1);
+  const Index known = std::min<Index>(joints - 1, numbers.size() / 3);
+  pose.middleCols(1, known) = Eigen::Map<const Points3d>(numbers.data(), 3, known);
   pose(1, 0) = random.uniform(-std::numbers::pi, std::numbers::pi);
   return pose;
 }
@@ -47,18 +50,33 @@ Calibration calibrate_model(const BodyModel& body, const PosePrior& prior, int b
   std::vector<CalibrationBody> seen;
   for (int i = 0; i < bodies; ++i) {
     execution.check();
-    Eigen::VectorXd betas(body.beta_count());
-    for (Index k = 0; k < betas.size(); ++k) betas[k] = kShapeSpread * random.normal();
+    Eigen::VectorXd betas = Eigen::VectorXd::Zero(body.beta_count());
+    for (Index k = 0; k < body.shape_count(); ++k) betas[k] = kShapeSpread * random.normal();
     const BodyState state = BodyState::from_axis_angle(draw_pose(body, prior, random), betas, Vec3d::Zero());
     const Points3f vertices = posed_vertices<float>(body, state);
     const ViewSurface surface = prepare_surface(vertices, body.faces, Points3f(3, 0), execution);
     const Skeleton skeleton = pose_skeleton(body, state);
     LandmarkStage stage(surface, skeleton.global[0].col(1), kViews, 0, execution);
     while (const auto request = stage.next_request()) stage.accept(run_network(*request));
-    seen.push_back({stage.result().swap_aware, skeleton.joints, skeleton.global});
+    CalibrationBody looked_at;
+    looked_at.landmarks = stage.result().swap_aware;
+    looked_at.joints.resize(3, kSmplJoints);
+    for (int j = 0; j < kSmplJoints; ++j) {
+      looked_at.joints.col(j) = skeleton.joints.col(body.joint_for_smpl(j));
+      looked_at.rotations.push_back(skeleton.global[body.joint_for_smpl(j)]);
+    }
+    seen.push_back(std::move(looked_at));
     execution.progress("calibrate", static_cast<double>(i + 1) / bodies);
   }
   return calibrate_landmarks(seen);
+}
+
+std::vector<LandmarkOffset> landmarks_on(const BodyModel& body, std::vector<LandmarkOffset> offsets) {
+  for (LandmarkOffset& offset : offsets) {
+    offset.joint = body.joint_for_smpl(offset.joint);
+    offset.frame_joint = body.joint_for_smpl(offset.frame_joint);
+  }
+  return offsets;
 }
 
 }  // namespace vitruvian

@@ -28,10 +28,14 @@ struct BodyParameters {
   Eigen::VectorXd betas;
   Points3d pose;  ///< 3 x J axis-angle, root first
   Vec3d translation_m = Vec3d::Zero();
-  std::string offsets_file{};  ///< file beside registration.json that holds the vertex offsets; empty: none
+  std::string offsets_file{};    ///< file beside registration.json that holds the vertex offsets; empty: none
+  Eigen::VectorXd expression{};  ///< empty for models without a face
+  Eigen::VectorXd dmpl{};        ///< soft tissue; empty without --dmpl
   bool operator==(const BodyParameters& other) const {
     return betas.size() == other.betas.size() && pose.cols() == other.pose.cols() && betas == other.betas &&
-           pose == other.pose && translation_m == other.translation_m && offsets_file == other.offsets_file;
+           expression.size() == other.expression.size() && expression == other.expression &&
+           dmpl.size() == other.dmpl.size() && dmpl == other.dmpl && pose == other.pose &&
+           translation_m == other.translation_m && offsets_file == other.offsets_file;
   }
 };
 

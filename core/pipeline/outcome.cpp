@@ -9,12 +9,27 @@
 #include "keypoints/left_right.h"
 #include "measure/surface_error_compute.h"
 #include "measure/verdict_features.h"
+#include "pipeline/body_parameters.h"
 
 namespace vitruvian {
 namespace {
 
 constexpr int kRefineSamples = 20000;
 constexpr double kSureKeypoint = 0.5;
+
+/// A file that is of one gender says so, unless the user says otherwise.
+ModelInfo describe_model(const BodyModel& body, Gender wanted, const BodyState& state) {
+  ModelInfo info;
+  info.name = body.name;
+  info.family = body.family;
+  info.sha256 = body.sha256;
+  info.gender = wanted == Gender::neutral ? body.gender.value_or(wanted) : wanted;
+  info.vertices = body.vertex_count();
+  info.faces = body.face_count();
+  info.betas = static_cast<int>(std::min<Index>(state.betas.size(), body.shape_count()));
+  info.joints = body.joint_count();
+  return info;
+}
 
 std::vector<JointFinding> limit_excess(const BodyModel& body, const PosePrior& prior,
                                        const BodyState& state) {
@@ -109,11 +124,10 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
   const Scan& scan = input.scan.scan;
   result.scan = {scan.file_name, scan.sha256, static_cast<long>(scan.vertices.cols()),
                  static_cast<long>(scan.faces.cols())};
-  result.model = {body.name,           body.family,       body.sha256,           input.settings.gender,
-                  body.vertex_count(), body.face_count(), input.fit_model.betas, body.joint_count()};
+  result.model = describe_model(body, input.settings.gender, state);
   result.alignment = describe_alignment(input.body_from_scan, input.unit, input.method);
   result.keypoints = input.keypoints;
-  result.parameters = BodyParameters{state.betas, state.axis_angle(), state.translation, ""};
+  result.parameters = parameters_of(body, state);
   const Points3d joints_scan = scan_from_body(input, skeleton.joints);
   for (int j = 0; j < body.joint_count(); ++j) {
     result.joints.push_back({body.joint_names[j], skeleton.joints.col(j), joints_scan.col(j)});

@@ -67,6 +67,8 @@ ordered_json parameters_to_json(const BodyParameters& parameters) {
   result["betas"] = numbers(parameters.betas);
   result["pose"] = numbers(parameters.pose);
   result["translation_m"] = numbers(parameters.translation_m);
+  if (parameters.expression.size() > 0) result["expression"] = numbers(parameters.expression);
+  if (parameters.dmpl.size() > 0) result["dmpl"] = numbers(parameters.dmpl);
   if (!parameters.offsets_file.empty()) result["offsets"] = parameters.offsets_file;
   return result;
 }
@@ -78,6 +80,8 @@ BodyParameters parameters_from_json(const JsonValue& value) {
   if (pose.size() == 0 || pose.size() % 3 != 0) value.at("pose").fail("three numbers a joint are expected");
   parameters.pose = Eigen::Map<const Points3d>(pose.data(), 3, pose.size() / 3);
   parameters.translation_m = value.at("translation_m").vector3();
+  if (value.has("expression")) parameters.expression = value.at("expression").numbers();
+  if (value.has("dmpl")) parameters.dmpl = value.at("dmpl").numbers();
   if (value.has("offsets")) parameters.offsets_file = value.at("offsets").text();
   return parameters;
 }

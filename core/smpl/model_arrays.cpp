@@ -33,6 +33,12 @@ ModelArrays::ModelArrays(std::span<const std::byte> bytes, std::string file_name
     npz_ = std::make_unique<NpzFile>(bytes, file_name_);
     return;
   }
+  // How a pickled dictionary can begin; anything else is another kind of file.
+  static constexpr std::string_view kBeginnings = "\x80(}c]";
+  if (bytes.empty() || kBeginnings.find(static_cast<char>(bytes[0])) == std::string_view::npos) {
+    throw Error(ErrorCode::unsupported_format,
+                file_name_ + ": is neither a NumPy archive (.npz) nor a pickle (.pkl)");
+  }
   pickle_ = std::make_unique<PickleFile>(bytes, file_name_);
   const PickleKind kind = pickle_->root().kind();
   if (kind != PickleKind::dictionary && kind != PickleKind::object)

@@ -57,6 +57,11 @@ def main():
         small = {"small": np.arange(6.0).reshape(2, 3), "f": np.arange(3), "half": np.float32(0.5)}
         write(os.path.join(out, f"protocol{protocol}.pkl"), pickle.dumps(small, protocol=protocol))
 
+    tiny = arrays.tiny(own)
+    write(os.path.join(out, "tiny_smpl.pkl"), files.official_pickle(tiny, "smpl"))
+    write(os.path.join(out, "tiny_smpl2.pkl"), files.plain_pickle(tiny, "smpl", 4))
+    files.write_npz(os.path.join(out, "tiny_smpl.npz"), tiny, "smpl", compressed=True)
+
     sized = arrays.resampled(own, 6890)
     smpl = arrays.with_columns(sized, 10, 1)
     write(os.path.join(out, "basicmodel_f_lbs_10_207_0_v1.1.0.pkl"), files.official_pickle(smpl, "smpl"))
@@ -84,6 +89,8 @@ def main():
     state = files.vposer_state(random)
     prefixed = {"vp_model." + k: files.Tensor(v, transposed=k.endswith("7.weight")) for k, v in state.items()}
     files.torch_zip(os.path.join(out, "V02_05_epoch=08.ckpt"), {"epoch": 8, "state_dict": prefixed})
+    small = {k: files.Tensor(v) for k, v in files.vposer_state(random, neurons=12, latent=4).items()}
+    files.torch_zip(os.path.join(out, "tiny_vposer.ckpt"), {"state_dict": small})
     z, pose = random.normal(size=32), random.normal(0, 0.4, 63)
     np.savez(os.path.join(out, "vposer.expected.npz"), z=z, rotations=files.vposer_decode(state, z), pose=pose,
              code=files.vposer_encode(state, pose))

@@ -53,6 +53,18 @@ def resampled(model, vertices):
     return m
 
 
+def tiny(model, vertices=30):
+    """A model with few vertices spread over the body and meaningless faces: small files for tests of damage."""
+    kept = np.linspace(0, len(model["v_template"]) - 1, vertices).astype(int)
+    m = {k: model[k][kept] for k in ("v_template", "posedirs", "weights")}
+    m["shapedirs"] = model["shapedirs"][kept, :, :4]
+    m["J_regressor"] = np.eye(24, vertices)
+    m["f"] = np.stack([np.arange(vertices), np.roll(np.arange(vertices), 1), np.roll(np.arange(vertices), 2)], 1)
+    m["f"] = m["f"].astype(np.uint32)
+    m["parents"] = model["parents"]
+    return m
+
+
 def with_columns(model, columns, seed):
     """The model with so many shape directions: the first ones, then small smooth ones made up."""
     m = dict(model)

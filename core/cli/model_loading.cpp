@@ -1,0 +1,71 @@
+#include "cli/model_loading.h"
+
+#include "base/sha256.h"
+#include "cli/paths.h"
+#include "io/file.h"
+#include "pipeline/calibrate.h"
+#include "pose/skeleton_prior.h"
+#include "smpl/read_model.h"
+#include "smpl/vposer.h"
+
+namespace vitruvian {
+namespace {
+
+constexpr int kCalibrationBodies = 24;
+constexpr std::uint32_t kCalibrationSeed = 1;
+
+PosePrior read_prior(const std::string& path) { return read_pose_prior(FileBytes(path).bytes(), path); }
+
+/// A user's prior: one of ours, or a VPoser checkpoint, which takes the place of our autoencoder.
+PosePrior with_users_prior(PosePrior bundled, const std::string& path) {
+  const FileBytes file(path);
+  if (is_array_file(file.bytes())) return read_pose_prior(file.bytes(), path);
+  bundled.vae = read_vposer(file.bytes(), path);
+  bundled.sha256 = to_hex(sha256(file.bytes()));
+  return bundled;
+}
+
+}  // namespace
+
+BodyModel load_body_model(const ModelFiles& files, const std::vector<std::string>& data_folders) {
+  const std::string path = files.model.empty() ? find_data_file(data_folders, "body.vbm") : files.model;
+  const FileBytes file(path);
+  SmplOptions options;
+  options.betas = files.betas;
+  BodyModel body = read_any_body_model(file.bytes(), path, options);
+  if (!files.dmpl.empty()) {
+    const FileBytes dmpl(files.dmpl);
+    add_dmpl(body, dmpl.bytes(), files.dmpl);
+  }
+  return body;
+}
+
+Models load_models(const ModelFiles& files, const std::vector<std::string>& data_folders,
+                   const CalibrationCache& cache,
+                   const std::function<NetworkReply(const NetworkRequest&)>& run_network,
+                   const Execution& execution) {
+  Models models;
+  models.body = load_body_model(files, data_folders);
+  const PosePrior bundled = read_prior(find_data_file(data_folders, "pose_prior.vpp"));
+  const PosePrior chosen = files.prior.empty() ? bundled : with_users_prior(bundled, files.prior);
+  models.prior = prior_for_skeleton(chosen, models.body);
+  if (models.body.family == "vitruvian") {
+    const std::string path = find_data_file(data_folders, "landmarks.json");
+    const FileBytes text(path);
+    models.landmarks = landmarks_from_json(
+        std::string(reinterpret_cast<const char*>(text.bytes().data()), text.bytes().size()), path);
+    return models;
+  }
+  auto known = cache.find(models.body.sha256);
+  if (!known) {
+    // Learnt with the bundled prior, so that the result depends on the model alone.
+    known = calibrate_model(models.body, prior_for_skeleton(bundled, models.body), kCalibrationBodies,
+                            kCalibrationSeed, run_network, execution)
+                .offsets;
+    cache.keep(models.body.sha256, *known);
+  }
+  models.landmarks = landmarks_on(models.body, *known);
+  return models;
+}
+
+}  // namespace vitruvian
