@@ -18,9 +18,11 @@ BodyParameters parameters_of(const BodyModel& body, const BodyState& state) {
 }
 
 BodyState state_of(const BodyParameters& parameters) {
-  Eigen::VectorXd coefficients(parameters.betas.size() + parameters.expression.size() +
-                               parameters.dmpl.size());
-  coefficients << parameters.betas, parameters.expression, parameters.dmpl;
+  const Index shapes = parameters.betas.size(), expressions = parameters.expression.size();
+  Eigen::VectorXd coefficients(shapes + expressions + parameters.dmpl.size());
+  coefficients.head(shapes) = parameters.betas;
+  coefficients.segment(shapes, expressions) = parameters.expression;
+  coefficients.tail(parameters.dmpl.size()) = parameters.dmpl;
   return BodyState::from_axis_angle(parameters.pose, coefficients, parameters.translation_m);
 }
 
