@@ -11,7 +11,7 @@
 namespace vitruvian {
 namespace {
 
-constexpr int kCalibrationBodies = 24;
+constexpr int kCalibrationBodies = 20;
 constexpr std::uint32_t kCalibrationSeed = 1;
 
 PosePrior read_prior(const std::string& path) { return read_pose_prior(FileBytes(path).bytes(), path); }

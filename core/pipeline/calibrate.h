@@ -12,7 +12,7 @@ namespace vitruvian {
 /// Learns where the landmarks sit on a body model by looking at the model itself: random shapes in poses
 /// drawn from the pose prior, seen and triangulated exactly like scans.
 /// @param prior   of the model's skeleton (prior_for_skeleton()).
-/// @param bodies  number of bodies; 24 or more are enough.
+/// @param bodies  number of bodies; 20 or more are enough.
 /// @return offsets in SMPL's numbering of 24 joints, whatever the model's joints are.
 Calibration calibrate_model(const BodyModel& body, const PosePrior& prior, int bodies, std::uint32_t seed,
                             const std::function<NetworkReply(const NetworkRequest&)>& run_network,
