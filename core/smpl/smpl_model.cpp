@@ -182,8 +182,8 @@ class Reader {
       std::array<double, 24> by_segment{};
       for (std::size_t j = 0; j < joints; ++j) {
         const double weight = weights.values[v * joints + j];
-        if (weight < -1e-6) arrays_.fail("weights: vertex " + std::to_string(v) + " has a negative one");
-        if (weight < kLeastWeight) continue;
+        if (std::abs(weight) > 2) arrays_.fail("weights: vertex " + std::to_string(v) + " has one beyond 1");
+        if (std::abs(weight) < kLeastWeight) continue;
         rows[v].emplace_back(weight, static_cast<int>(j));
         by_segment[static_cast<std::size_t>(segment_of_joint(family_, static_cast<int>(j)))] += weight;
         sum += weight;
@@ -192,8 +192,9 @@ class Reader {
         arrays_.fail("weights: those of vertex " + std::to_string(v) + " sum to " + std::to_string(sum) +
                      ", not 1");
       for (auto& [weight, joint] : rows[v]) weight /= sum;
+      // Learnt weights may be a little below 0; largest first all the same, as zeros end a vertex's list.
       std::stable_sort(rows[v].begin(), rows[v].end(),
-                       [](const auto& a, const auto& b) { return a.first > b.first; });
+                       [](const auto& a, const auto& b) { return std::abs(a.first) > std::abs(b.first); });
       most = std::max(most, rows[v].size());
       model.segment[v] = static_cast<std::uint8_t>(std::max_element(by_segment.begin(), by_segment.end()) -
                                                    by_segment.begin());
