@@ -11,10 +11,16 @@ namespace vitruvian {
 namespace {
 
 constexpr std::uint32_t kOrderSeed = 7;
-/// What the derivatives go without; the default body has no more than this.
-constexpr int kMostCorrectives = 4;
+/// Where every joint corrects every vertex, as in SMPL's files, the derivatives know only the strongest
+/// blocks of each vertex.
+constexpr int kDenseCorrectives = 12, kMostCorrectives = 4;
 constexpr Index kFewWeights = 4;
 constexpr float kLeastWeight = 1e-3f;
+
+int most_correctives(const BodyModel& body) {
+  return static_cast<int>(body.corrective.size()) > kDenseCorrectives * body.vertex_count() ? kMostCorrectives
+                                                                                            : 0;
+}
 
 /// Marginal of the prior over its first components: the covariance is cut, not the precision.
 ShapePrior cut(const ShapePrior& prior, int betas) {
@@ -29,7 +35,8 @@ FitModel::FitModel(const BodyModel& body_model, const PosePrior& pose_prior, Gen
     : body(body_model),
       prior(pose_prior),
       betas(beta_limit > 0 && beta_limit < body_model.shape_count() ? beta_limit : body_model.beta_count()),
-      groups(body_model, kMostCorrectives, body_model.skin_joint.rows() > kFewWeights ? kLeastWeight : 0) {
+      groups(body_model, most_correctives(body_model),
+             body_model.skin_joint.rows() > kFewWeights ? kLeastWeight : 0) {
   shape_prior = cut(body.prior(gender), betas);
   Random random(kOrderSeed);
   std::vector<std::pair<double, int>> keys(body.vertex_count());

@@ -66,7 +66,7 @@ def main():
     smpl = arrays.with_columns(sized, 10, 1)
     write(os.path.join(out, "basicmodel_f_lbs_10_207_0_v1.1.0.pkl"), files.official_pickle(smpl, "smpl"))
     expect(out, "basicmodel_f_lbs_10_207_0_v1.1.0", smpl, "smpl", list(range(10)), 1)
-    smpl_300 = arrays.with_columns(sized, 300, 2)
+    smpl_300 = arrays.with_columns(arrays.with_dense_correctives(sized, 12), 300, 2)
     write(os.path.join(out, "SMPL_MALE_300.pkl"), files.plain_pickle(smpl_300, "smpl", 5))
     expect(out, "SMPL_MALE_300", smpl_300, "smpl", list(range(300)), 2)
     smplh = arrays.with_columns(arrays.with_fingers(sized, "smplh"), 16, 3)

@@ -76,6 +76,12 @@ def with_columns(model, columns, seed):
     return m
 
 
+def with_dense_correctives(model, seed):
+    """Correctives that move every vertex a little with every joint, as the official files have them."""
+    noise = np.random.default_rng(seed).normal(0, 2e-4, model["posedirs"].shape)
+    return dict(model, posedirs=model["posedirs"] + noise)
+
+
 def with_fingers(model, family):
     """SMPL+H or SMPL-X: the hand's joint becomes the middle finger's first; the others are joints nobody follows."""
     first = FINGERS[family]
