@@ -7,7 +7,7 @@ from typing import Callable
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-_MAKING = threading.Lock()  # one scan is made at a time: several cases may share it
+_MAKING = threading.RLock()  # one scan is made at a time: several cases may share it, and one may be made from another
 
 
 @dataclass
