@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "io/pickle_text.h"
@@ -202,8 +203,9 @@ SparseMatrix read_sparse(const PickleValue& value, const std::string& name) {
         indices_of(value, "indices", by_column ? matrix.rows : matrix.columns, name);
     std::vector<std::uint32_t> outer = unfolded(indices_of(value, "indptr", entries + 1, name), entries,
                                                 by_column ? matrix.columns : matrix.rows, name);
-    matrix.row = by_column ? std::move(inner) : std::move(outer);
-    matrix.column = by_column ? std::move(outer) : std::move(inner);
+    if (by_column) std::swap(inner, outer);
+    matrix.row = std::move(outer);
+    matrix.column = std::move(inner);
   } else if (kind.find(".coo_") != std::string::npos) {
     matrix.row = indices_of(value, "row", matrix.rows, name);
     matrix.column = indices_of(value, "col", matrix.columns, name);
