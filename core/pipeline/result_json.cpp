@@ -15,21 +15,6 @@ double rounded(double value, double digits_factor) {
 }
 double millimetres(double value) { return rounded(value, 1e4); }
 
-template <typename Derived>
-ordered_json numbers(const Eigen::MatrixBase<Derived>& values) {
-  ordered_json result = ordered_json::array();
-  for (Index c = 0; c < values.cols(); ++c) {
-    for (Index r = 0; r < values.rows(); ++r) result.push_back(values(r, c));
-  }
-  return result;
-}
-
-ordered_json rows(const Mat4d& matrix) {
-  ordered_json result = ordered_json::array();
-  for (int r = 0; r < 4; ++r) result.push_back(numbers(matrix.row(r)));
-  return result;
-}
-
 void add_statistics(ordered_json& object, const DistanceStatistics* statistics) {
   const bool known = statistics != nullptr && statistics->count > 0;
   const auto value = [&](double DistanceStatistics::*member) {

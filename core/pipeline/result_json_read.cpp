@@ -11,17 +11,6 @@ namespace {
 
 constexpr std::int64_t kLargestCount = std::numeric_limits<std::int32_t>::max();
 
-template <typename Enum>
-Enum named(const JsonValue& value) {
-  const std::optional<Enum> found = value_named<Enum>(value.text());
-  if (!found) {
-    std::string names;
-    for (const NamedValue<Enum>& candidate : named_values<Enum>()) names += " " + std::string(candidate.name);
-    value.fail("one of" + names + " is expected");
-  }
-  return *found;
-}
-
 /// A number or null, which is 0.
 double number_or_zero(const JsonValue& value) { return value.is_null() ? 0 : value.number(); }
 

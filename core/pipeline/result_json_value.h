@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "base/types.h"
 #include "pipeline/result_json.h"
+#include "pipeline/settings_names.h"
 
 namespace vitruvian {
 
@@ -56,6 +58,35 @@ class JsonValue {
   std::string file_name_;
   std::string place_;
 };
+
+/// The value of an enumeration that a text names. @throws Error(bad_file) listing the names.
+template <typename Enum>
+Enum named(const JsonValue& value) {
+  const std::optional<Enum> found = value_named<Enum>(value.text());
+  if (!found) {
+    std::string names;
+    for (const NamedValue<Enum>& candidate : named_values<Enum>()) names += " " + std::string(candidate.name);
+    value.fail("one of" + names + " is expected");
+  }
+  return *found;
+}
+
+/// All numbers of a matrix in one array, column by column.
+template <typename Derived>
+nlohmann::ordered_json numbers(const Eigen::MatrixBase<Derived>& values) {
+  nlohmann::ordered_json result = nlohmann::ordered_json::array();
+  for (Index c = 0; c < values.cols(); ++c) {
+    for (Index r = 0; r < values.rows(); ++r) result.push_back(values(r, c));
+  }
+  return result;
+}
+
+/// Four rows of four numbers.
+inline nlohmann::ordered_json rows(const Mat4d& matrix) {
+  nlohmann::ordered_json result = nlohmann::ordered_json::array();
+  for (int r = 0; r < 4; ++r) result.push_back(numbers(matrix.row(r)));
+  return result;
+}
 
 /// Parses a whole document. @throws Error(bad_file) with line and column.
 nlohmann::json parse_json(std::string_view text, const std::string& file_name);

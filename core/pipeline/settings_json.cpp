@@ -13,32 +13,8 @@ using nlohmann::ordered_json;
 
 constexpr std::int64_t kLargestCount = 1'000'000;
 
-template <typename Derived>
-ordered_json numbers(const Eigen::MatrixBase<Derived>& values) {
-  ordered_json result = ordered_json::array();
-  for (Index c = 0; c < values.cols(); ++c) {
-    for (Index r = 0; r < values.rows(); ++r) result.push_back(values(r, c));
-  }
-  return result;
-}
-
-template <typename Enum>
-Enum named(const JsonValue& value) {
-  const std::optional<Enum> found = value_named<Enum>(value.text());
-  if (!found) {
-    std::string names;
-    for (const NamedValue<Enum>& candidate : named_values<Enum>()) names += " " + std::string(candidate.name);
-    value.fail("one of" + names + " is expected");
-  }
-  return *found;
-}
-
 void add_edits(ordered_json& result, const Settings& settings) {
-  if (settings.body_from_scan) {
-    ordered_json rows = ordered_json::array();
-    for (int r = 0; r < 4; ++r) rows.push_back(numbers(settings.body_from_scan->row(r)));
-    result["body_from_scan"] = std::move(rows);
-  }
+  if (settings.body_from_scan) result["body_from_scan"] = rows(*settings.body_from_scan);
   if (settings.keypoints) result["keypoints"] = keypoint_set_to_json(*settings.keypoints);
   if (settings.regions) result["regions"] = regions_to_json(*settings.regions);
   if (settings.start) {
