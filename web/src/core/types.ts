@@ -87,7 +87,15 @@ export interface Registration {
     unit: Unit;
     metres_per_unit: number;
   };
-  model: { name: string; gender: Gender; vertices: number; faces: number; betas: number; joints: number };
+  model: {
+    name: string;
+    gender: Gender;
+    vertices: number;
+    faces: number;
+    betas: number;
+    joints: number;
+    sha256: string;
+  };
   alignment: Alignment | null;
   keypoints: Keypoint[];
   parameters: { betas: number[]; pose: number[]; translation_m: Vec3; offsets?: string } | null;

@@ -1,8 +1,8 @@
 import type { OutputFile } from "../core/types";
 
 /** Hands bytes to the browser's download. */
-export function save(name: string, data: Uint8Array): void {
-  const url = URL.createObjectURL(new Blob([data as BlobPart]));
+export function save(name: string, data: Uint8Array | Blob): void {
+  const url = URL.createObjectURL(data instanceof Blob ? data : new Blob([data as BlobPart]));
   const link = document.createElement("a");
   link.href = url;
   link.download = name;

@@ -1,13 +1,20 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import { droppedFiles, isPile } from "../batch/files";
+import * as queue from "../batch/queue";
 import { kCoreStages, kStages } from "../core/types";
 import { cancel, openFile, register, run } from "./actions";
 import { About, Help } from "./Dialogs";
 import { Header } from "./Header";
 import { Inspector } from "./Inspector";
+import { lazyPart } from "./lazy";
+import { mode } from "./mode";
 import { StageRail } from "./StageRail";
 import * as state from "./state";
 import { ViewPane } from "./ViewPane";
+
+const BatchPage = lazyPart(() => import("../batch/BatchPage").then((m) => m.BatchPage));
+const OpenedNote = lazyPart(() => import("../batch/OpenedNote").then((m) => m.OpenedNote));
 
 /** Elements that use letters and digits themselves. */
 const TYPING = "select, textarea, dialog, input:not([type=radio], [type=checkbox], [type=range])";
@@ -22,6 +29,7 @@ export function App() {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.key === "Escape") return state.busy.value ? cancel() : undefined;
       if ((event.target as HTMLElement).closest(TYPING)) return;
+      if (event.key !== "?" && mode.value !== "scan") return;
       const stage = kStages[Number(event.key) - 1];
       if (stage) state.stage.value = stage;
       else if (event.key === "o") pick();
@@ -58,8 +66,7 @@ export function App() {
       event.preventDefault();
       depth = 0;
       dragged.value = false;
-      const file = event.dataTransfer?.files[0];
-      if (file) void openFile(file, file.name);
+      if (event.dataTransfer) void dropped(event.dataTransfer);
     };
     addEventListener("dragenter", onEnter);
     addEventListener("dragleave", onLeave);
@@ -76,7 +83,9 @@ export function App() {
   return (
     <>
       <Header />
-      <main>
+      {mode.value === "batch" && <BatchPage />}
+      {mode.value === "scan" && queue.opened.value !== null && <OpenedNote />}
+      <main class={mode.value === "scan" ? "" : "hidden"}>
         <StageRail />
         <ViewPane />
         <Inspector pick={pick} />
@@ -93,12 +102,24 @@ export function App() {
           if (file) void openFile(file, file.name);
         }}
       />
-      {dragged.value && <div class="drop-here">Drop the scan anywhere</div>}
+      {dragged.value && <div class="drop-here">Drop scans anywhere</div>}
       <Announcer />
       {state.aboutOpen.value && <About />}
       {state.helpOpen.value && <Help />}
     </>
   );
+}
+
+/** One scan is opened; several, or a folder, make a batch. */
+async function dropped(transfer: DataTransfer): Promise<void> {
+  const file = transfer.files[0];
+  if (mode.value === "scan" && !isPile(transfer)) {
+    if (file) await openFile(file, file.name);
+    return;
+  }
+  const files = droppedFiles(transfer);
+  mode.value = "batch";
+  queue.add(await files);
 }
 
 /** Says progress and outcomes to screen readers. */

@@ -1,3 +1,4 @@
+import { MODES, mode } from "./mode";
 import * as state from "./state";
 import { type Theme, theme } from "./theme";
 
@@ -6,6 +7,21 @@ export function Header() {
     <header>
       <img src="./icon.svg" alt="" width={28} height={28} />
       <h1>Vitruvian</h1>
+      <fieldset class="modes" aria-label="What to do">
+        {MODES.map(([value, name, what]) => (
+          <button
+            type="button"
+            key={value}
+            title={what}
+            aria-pressed={mode.value === value}
+            onClick={() => {
+              mode.value = value;
+            }}
+          >
+            {name}
+          </button>
+        ))}
+      </fieldset>
       <p class="claim">Your scan never leaves this computer.</p>
       <label class="theme">
         <span class="unseen">Theme</span>

@@ -147,6 +147,39 @@ export function register(): Promise<void> {
   return run("register", "results");
 }
 
+/**
+ * Lends the core to other work than the main view's. Unless they are kept, the view's findings are out of date
+ * afterwards. @throws what `work` throws, CoreError(internal) when the core is at work.
+ */
+export async function borrowCore(
+  work: (client: CoreClient) => Promise<void>,
+  findings: "drop" | "keep" = "drop",
+): Promise<void> {
+  if (state.busy.value) throw new CoreError("internal", "the core is at work");
+  batch(() => {
+    state.busy.value = { stage: "register", since: performance.now() };
+    state.progress.value = null;
+  });
+  try {
+    await ensureCore();
+    if (findings === "drop") {
+      scanIsInCore = false;
+      keep([]);
+    }
+    await work(client);
+  } catch (error) {
+    // What is left of a core without memory would fail the next scan too.
+    if (error instanceof CoreError && error.code === "out_of_memory") client.end();
+    if (!client.alive) state.core.value = null;
+    throw error;
+  } finally {
+    batch(() => {
+      state.busy.value = null;
+      state.progress.value = null;
+    });
+  }
+}
+
 export function cancel(): void {
   if (!state.busy.value || !client.alive) return;
   const since = state.busy.value.since;

@@ -1,0 +1,11 @@
+import { signal } from "@preact/signals";
+
+/** What the page is used for. */
+export type Mode = "scan" | "batch";
+
+export const MODES: readonly (readonly [Mode, string, string])[] = [
+  ["scan", "One scan", "Register one scan, stage by stage"],
+  ["batch", "Batch", "Register many scans one after the other"],
+];
+
+export const mode = signal<Mode>("scan");

@@ -1,0 +1,66 @@
+import { beforeEach, describe, expect, it } from "vitest";
+import { isScanName, scansAmong } from "../src/batch/files";
+import * as queue from "../src/batch/queue";
+import { batchCsv } from "../src/batch/table";
+import { CoreError } from "../src/core/types";
+
+const file = (name: string, text = "x") => new File([text], name);
+
+beforeEach(() => {
+  queue.items.value = [];
+});
+
+describe("the queue", () => {
+  it("names folders as the command line does, each once", () => {
+    queue.add([file("a.ply"), file("a.obj"), file("a.ply.gz"), file("a-2.stl"), file(".ply")]);
+    expect(queue.items.value.map(({ folder }) => folder)).toEqual(["a", "a-2", "a-3", "a-2-2", ".ply"]);
+  });
+
+  it("gives a kept result its file back, and only that file", () => {
+    queue.add([file("a.ply", "1234")]);
+    const { id: _, ...kept } = { ...queue.items.value[0]!, file: null, status: "done" as const, outcome };
+    queue.items.value = [];
+    queue.restore([kept]);
+    queue.add([file("a.ply", "another length"), file("a.ply", "1234")]);
+    expect(queue.items.value.map(({ status, file }) => [status, file?.size])).toEqual([
+      ["done", 4],
+      ["waiting", 14],
+    ]);
+  });
+
+  it("does not let a scan at work be removed", () => {
+    queue.add([file("a.ply"), file("b.ply")]);
+    queue.update(queue.items.value[0]!.id, { status: "working" });
+    queue.removeAll();
+    expect(queue.items.value.map(({ name }) => name)).toEqual(["a.ply"]);
+  });
+});
+
+describe("the table", () => {
+  it("has a row a scan, NA where there is no number, and quotes what needs it", () => {
+    queue.add([file("a.ply"), file("b.ply"), file("c.ply")]);
+    const [a, b] = queue.items.value as [queue.Item, queue.Item];
+    queue.update(a.id, { status: "done", outcome });
+    queue.update(b.id, { status: "error", error: new CoreError("bad_file", "b.ply:\nline 3") });
+    expect(batchCsv(queue.items.value)).toBe(
+      [
+        "scan,verdict,confidence,mean_mm,p95_mm,scan_p95_mm,seconds,remark",
+        'a,doubtful,0.5000,2.5000,7.0000,NA,3.250,"a ""bad"", arm; cold"',
+        'b,error,NA,NA,NA,NA,NA,"bad_file: b.ply:\nline 3"',
+        "c,waiting,NA,NA,NA,NA,NA,",
+        "",
+      ].join("\n"),
+    );
+  });
+});
+
+describe("a folder", () => {
+  it("gives its scans in order, and nothing else", () => {
+    const names = ["scan10.ply", "scan2.PLY.gz", ".hidden.ply", "notes.pdf", "Ærø.glb"];
+    expect(names.filter(isScanName)).toEqual(["scan10.ply", "scan2.PLY.gz", "Ærø.glb"]);
+    const picked = names.map((name) =>
+      Object.defineProperty(file(name), "webkitRelativePath", { value: `day/${name}` }),
+    );
+    expect(scansAmong(picked).map(({ name }) => name)).toEqual(["Ærø.glb", "scan2.PLY.gz", "scan10.ply"]);
+  });
+});
