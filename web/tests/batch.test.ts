@@ -6,6 +6,15 @@ import { CoreError } from "../src/core/types";
 
 const file = (name: string, text = "x") => new File([text], name);
 
+const outcome: queue.Outcome = {
+  verdict: { status: "doubtful", confidence: 0.5, reasons: ['a "bad", arm', "cold"] },
+  mean_mm: 2.5,
+  p95_mm: 7,
+  scan_p95_mm: null,
+  seconds: 3.25,
+  files: new Blob(),
+};
+
 beforeEach(() => {
   queue.items.value = [];
 });
