@@ -54,8 +54,8 @@ class Session {
   /// that was opened.
   std::string scan_report() const;
 
-  /// Takes settings over. @param settings  JSON with the names and values of the command line; what is
-  /// missing keeps its default.
+  /// Takes settings over. @param settings  JSON as chosen_settings() reads it: any of the `settings` of
+  /// registration.json, edits made by hand (`body_from_scan`, `keypoints`, `regions`, `start`) included.
   /// @return how many of the pipeline's stages still hold, 0..4.  @throws Error(usage, not_available).
   int configure(const std::string& settings);
   /// Starts to work the opened scan up to a stage: only what is not there yet, or that stage and all after it

@@ -3,22 +3,10 @@
 #include <cstdint>
 
 #include "base/error.h"
-#include "pipeline/settings_names.h"
+#include "pipeline/result_json_value.h"
+#include "pipeline/settings_json.h"
 
 namespace vitruvian::wasm {
-namespace {
-
-/// Sets `value` from the member `key`, if there is one.
-template <typename Enum>
-void read_choice(const nlohmann::json& json, const char* key, Enum& value) {
-  if (!json.contains(key)) return;
-  const std::string name = json.at(key).is_string() ? json.at(key).get<std::string>() : json.at(key).dump();
-  const auto found = value_named<Enum>(name);
-  if (!found) throw Error(ErrorCode::usage, "settings: " + std::string(key) + " cannot be \"" + name + "\"");
-  value = *found;
-}
-
-}  // namespace
 
 nlohmann::json array_reference(const void* data, std::ptrdiff_t elements) {
   return {reinterpret_cast<std::uintptr_t>(data), elements};
@@ -109,21 +97,12 @@ nlohmann::json describe_joints(const BodyModel& body, const BodyState& state) {
 }
 
 Settings parse_settings(const std::string& text) {
-  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-  if (!json.is_object()) throw Error(ErrorCode::usage, "settings: an object is expected");
-  Settings settings;
-  read_choice(json, "method", settings.method);
-  read_choice(json, "align", settings.align);
-  read_choice(json, "init", settings.init);
-  read_choice(json, "solver", settings.solver);
-  read_choice(json, "gender", settings.gender);
-  read_choice(json, "unit", settings.unit);
-  read_choice(json, "up", settings.up);
-  read_choice(json, "front", settings.front);
-  read_choice(json, "detail", settings.detail);
-  settings.views = json.value("views", settings.views);
-  settings.seed = json.value("seed", settings.seed);
-  return settings;
+  try {
+    const nlohmann::json json = parse_json(text, "settings");
+    return chosen_settings(JsonValue(json, "settings", ""));
+  } catch (const Error& error) {
+    throw Error(ErrorCode::usage, error.what());
+  }
 }
 
 std::string text_of(const nlohmann::json& json) {

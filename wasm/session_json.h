@@ -29,7 +29,7 @@ nlohmann::json describe_keypoints(const std::vector<Keypoint>& keypoints);
 /// `[{"name", "body_m", "turn_rad"}]`: position, and rotation against the parent (its angle).
 nlohmann::json describe_joints(const BodyModel& body, const BodyState& state);
 
-/// @throws Error(usage) naming what is wrong.
+/// chosen_settings() of a text. @throws Error(usage) naming what is wrong.
 Settings parse_settings(const std::string& text);
 
 std::string text_of(const nlohmann::json& json);

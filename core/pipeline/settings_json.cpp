@@ -1,6 +1,12 @@
 #include "pipeline/settings_json.h"
 
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <limits>
+#include <string>
+#include <string_view>
+#include <type_traits>
 
 #include "pipeline/regions.h"
 #include "pipeline/result_json_keypoints.h"
@@ -23,13 +29,59 @@ void add_edits(ordered_json& result, const Settings& settings) {
   }
 }
 
+bool given(const JsonValue& value, const char* key) { return value.has(key) && !value.at(key).is_null(); }
+
+/// Reads one setting.
+struct SettingReader {
+  const char* name;
+  void (*read)(const JsonValue& value, Settings& settings);
+};
+
+template <auto member>
+void read_choice(const JsonValue& value, Settings& settings) {
+  settings.*member = named<std::remove_reference_t<decltype(settings.*member)>>(value);
+}
+
+template <auto member, std::int64_t low, std::int64_t high>
+void read_whole(const JsonValue& value, Settings& settings) {
+  settings.*member = static_cast<std::remove_reference_t<decltype(settings.*member)>>(value.whole(low, high));
+}
+
+/// Every setting but the edits, by its name.
+constexpr SettingReader kReaders[] = {
+    {"method", read_choice<&Settings::method>},
+    {"align", read_choice<&Settings::align>},
+    {"views", read_whole<&Settings::views, 1, 64>},
+    {"min_visibility",
+     [](const JsonValue& value, Settings& settings) { settings.min_visibility = value.number(); }},
+    {"init", read_choice<&Settings::init>},
+    {"solver", read_choice<&Settings::solver>},
+    {"iterations", read_whole<&Settings::iterations, 1, kLargestCount>},
+    {"adam_iterations", read_whole<&Settings::adam_iterations, 0, kLargestCount>},
+    {"one_directional",
+     [](const JsonValue& value, Settings& settings) { settings.one_directional = value.truth(); }},
+    {"chunk", read_whole<&Settings::chunk, 0, kLargestCount>},
+    {"gender", read_choice<&Settings::gender>},
+    {"betas", read_whole<&Settings::betas, 0, 10000>},
+    {"units", read_choice<&Settings::unit>},
+    {"up", read_choice<&Settings::up>},
+    {"front", read_choice<&Settings::front>},
+    {"detail", read_choice<&Settings::detail>},
+    {"threads", read_whole<&Settings::threads, 0, 4096>},
+    {"seed", read_whole<&Settings::seed, 0, std::numeric_limits<std::uint32_t>::max()>},
+};
+constexpr std::array<std::string_view, 4> kEdits = {"body_from_scan", "keypoints", "regions", "start"};
+
 void read_edits(const JsonValue& value, Settings& settings) {
-  if (value.has("body_from_scan")) settings.body_from_scan = alignment_from_json(value.at("body_from_scan"));
-  if (value.has("keypoints")) settings.keypoints = keypoint_set_from_json(value.at("keypoints"));
-  if (value.has("regions")) settings.regions = regions_from_json(value.at("regions"));
-  if (value.has("start")) {
+  if (given(value, "body_from_scan"))
+    settings.body_from_scan = alignment_from_json(value.at("body_from_scan"));
+  if (given(value, "keypoints")) settings.keypoints = keypoint_set_from_json(value.at("keypoints"));
+  if (given(value, "regions")) settings.regions = regions_from_json(value.at("regions"));
+  if (given(value, "start")) {
     const JsonValue start = value.at("start");
     settings.start = StartBody{parameters_from_json(start), start.at("model_sha256").text()};
+    // Vertex offsets lie on top of the parametric body that a fit starts from.
+    settings.start->parameters.offsets_file.clear();
   }
   if ((settings.init == InitMode::file) != settings.start.has_value()) {
     value.fail("\"start\" belongs to \"init\": \"file\", and only to that");
@@ -88,25 +140,23 @@ ordered_json settings_to_json(const Settings& settings) {
 
 Settings settings_from_json(const JsonValue& value) {
   Settings settings;
-  settings.method = named<Method>(value.at("method"));
-  settings.align = named<AlignMode>(value.at("align"));
-  settings.views = static_cast<int>(value.at("views").whole(1, 64));
-  settings.min_visibility = value.at("min_visibility").number();
-  settings.init = named<InitMode>(value.at("init"));
-  settings.solver = named<SolverKind>(value.at("solver"));
-  settings.iterations = static_cast<int>(value.at("iterations").whole(1, kLargestCount));
-  settings.adam_iterations = static_cast<int>(value.at("adam_iterations").whole(0, kLargestCount));
-  settings.one_directional = value.at("one_directional").truth();
-  settings.chunk = static_cast<int>(value.at("chunk").whole(0, kLargestCount));
-  settings.gender = named<Gender>(value.at("gender"));
-  settings.betas = static_cast<int>(value.at("betas").whole(0, 10000));
-  settings.unit = named<Unit>(value.at("units"));
-  settings.up = named<Axis>(value.at("up"));
-  settings.front = named<Axis>(value.at("front"));
-  settings.detail = named<DetailMode>(value.at("detail"));
-  settings.threads = static_cast<int>(value.at("threads").whole(0, 4096));
-  settings.seed =
-      static_cast<std::uint32_t>(value.at("seed").whole(0, std::numeric_limits<std::uint32_t>::max()));
+  for (const auto& [name, read] : kReaders) read(value.at(name), settings);
+  read_edits(value, settings);
+  return settings;
+}
+
+Settings chosen_settings(const JsonValue& value) {
+  value.for_each_member([](const std::string& name, const JsonValue& member) {
+    const auto is_its = [&](const SettingReader& reader) { return reader.name == name; };
+    if (std::none_of(std::begin(kReaders), std::end(kReaders), is_its) &&
+        std::find(kEdits.begin(), kEdits.end(), name) == kEdits.end())
+      member.fail("there is no setting of this name");
+  });
+  Settings settings;
+  if (given(value, "method")) settings = settings_of(named<Method>(value.at("method")));
+  for (const auto& [name, read] : kReaders) {
+    if (given(value, name)) read(value.at(name), settings);
+  }
   read_edits(value, settings);
   return settings;
 }

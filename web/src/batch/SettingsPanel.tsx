@@ -88,10 +88,10 @@ export function SettingsChoices({ settings, disabled = false, onChange }: Choice
       />
       <Choice
         label="Unit"
-        value={settings.unit}
+        value={settings.units}
         options={UNITS}
         disabled={disabled}
-        onChange={(unit) => set({ unit })}
+        onChange={(units) => set({ units })}
       />
       <Choice
         label="Up"

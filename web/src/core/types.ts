@@ -1,5 +1,7 @@
 // What crosses between the page and the core. JSON types follow the outside contract of registration.json.
 
+import type { Edits } from "./edits";
+
 /** A 4x4 as four rows of four. */
 export type Matrix = readonly (readonly number[])[];
 export type Vec3 = readonly [number, number, number];
@@ -8,24 +10,30 @@ export type Unit = "m" | "cm" | "mm" | "in";
 export type Axis = "x" | "y" | "z" | "-x" | "-y" | "-z";
 export type Gender = "neutral" | "female" | "male";
 
-/** What decides a registration besides the scan and the models. */
-export interface Settings {
+/**
+ * What decides a registration besides the scan and the models: members of `settings` in registration.json. What is
+ * missing is as the method says.
+ */
+export interface Settings extends Edits {
   method: "ours" | "paper" | "paper-cpu";
   gender: Gender;
   /** pictures that the keypoints are found in */
-  views: 2 | 8;
-  unit: Unit | "auto";
+  views?: 2 | 8 | undefined;
+  units: Unit | "auto";
   up: Axis | "auto";
   front: Axis | "auto";
   detail: "off" | "vertex";
+  /** published solver: of each of its stages */
+  iterations?: number | undefined;
+  /** published solver: of these by Adam, the rest by L-BFGS */
+  adam_iterations?: number | undefined;
   seed: number;
 }
 
 export const defaultSettings: Settings = {
   method: "ours",
   gender: "neutral",
-  views: 8,
-  unit: "auto",
+  units: "auto",
   up: "auto",
   front: "auto",
   detail: "off",

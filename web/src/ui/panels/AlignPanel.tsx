@@ -30,7 +30,7 @@ export function AlignPanel() {
   const { align } = found.value;
   const busy = isBusy.value !== null;
   if (!scan.value) return <p class="quiet">Open a scan first.</p>;
-  const { unit, up, front } = settings.value;
+  const { units, up, front } = settings.value;
   return (
     <>
       <p class="quiet">
@@ -58,10 +58,10 @@ export function AlignPanel() {
       {align?.note && <p class="note">{align.note}</p>}
       <Choice
         label="Unit"
-        value={unit}
+        value={units}
         options={UNITS}
         disabled={busy}
-        onChange={(value) => void change({ unit: value })}
+        onChange={(value) => void change({ units: value })}
       />
       <Choice
         label="Up"

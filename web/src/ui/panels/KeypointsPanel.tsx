@@ -4,6 +4,7 @@ import { confidenceColour } from "../../result/colours";
 import { displayName, percent } from "../../result/format";
 import { change } from "../actions";
 import { Choice } from "../Choice";
+import { viewCount } from "../MethodChoice";
 import { RunStage } from "../RunStage";
 import { busy, found, scan, settings, setView, view } from "../state";
 
@@ -22,7 +23,7 @@ export function KeypointsPanel() {
       </p>
       <Choice
         label="Pictures"
-        value={settings.value.views === 8 ? "8" : "2"}
+        value={viewCount(settings.value) === 8 ? "8" : "2"}
         options={VIEWS}
         disabled={busy.value !== null}
         onChange={(value) => void change({ views: value === "8" ? 8 : 2 })}

@@ -1,6 +1,7 @@
 import { seconds } from "../../result/format";
 import { BodyChoice } from "../BodyChoice";
 import { DetailChoice } from "../DetailChoice";
+import { MethodChoice } from "../MethodChoice";
 import { RunStage } from "../RunStage";
 import { result, scan } from "../state";
 import { ViewControls } from "../ViewControls";
@@ -29,6 +30,7 @@ export function RegisterPanel() {
         measured.
       </p>
       <BodyChoice />
+      <MethodChoice />
       <DetailChoice />
       <RunStage stage="register" />
       {registered && <ViewControls />}
