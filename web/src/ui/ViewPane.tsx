@@ -15,26 +15,38 @@ const SIDES: [Direction, string][] = [
   ["top", "Top"],
 ];
 
+const turn = () => new Promise((resolve) => setTimeout(resolve));
+
+/** Program, graphics context and scene, each in a turn of the page of its own. @throws Error without WebGL */
+async function startViewer(canvas: HTMLCanvasElement): Promise<Viewer> {
+  const { Viewer } = await import("../viewer/viewer");
+  await turn();
+  const viewer = new Viewer(canvas);
+  await turn();
+  return viewer;
+}
+
 /** The 3D view with its toolbar and legend. three.js is loaded when the first scan is opened. */
 export function ViewPane() {
   const canvas = useRef<HTMLCanvasElement>(null);
   const viewer = useSignal<Viewer | null>(null);
   const failed = useSignal("");
-  const wanted = state.scan.value !== null;
+  const hasScan = state.scan.value !== null;
+  // While a scan is being read the graphics card can get ready.
+  const wanted = hasScan || state.busy.value !== null;
 
+  const begun = useRef(false);
   useEffect(() => {
-    if (!wanted || viewer.peek()) return;
-    let live = true;
-    import("../viewer/viewer")
-      .then(({ Viewer }) => {
-        if (live && canvas.current) viewer.value = new Viewer(canvas.current);
-      })
-      .catch((error: unknown) => {
+    if (!wanted || begun.current) return;
+    begun.current = true;
+    startViewer(canvas.current!).then(
+      (started) => {
+        viewer.value = started;
+      },
+      (error: unknown) => {
         failed.value = error instanceof Error ? error.message : String(error);
-      });
-    return () => {
-      live = false;
-    };
+      },
+    );
   }, [wanted, viewer, failed]);
   useEffect(() => () => viewer.peek()?.dispose(), [viewer]);
 
@@ -106,7 +118,7 @@ export function ViewPane() {
           acceleration or WebGL to see it.
         </p>
       )}
-      {wanted && (
+      {hasScan && (
         <div class="view-tools" role="toolbar" aria-label="View">
           {SIDES.map(([direction, name]) => (
             <button type="button" key={direction} onClick={() => viewer.value?.look(direction)}>

@@ -2,59 +2,38 @@
 import {
   AmbientLight,
   Box3,
-  BufferAttribute,
-  BufferGeometry,
-  Color,
   DirectionalLight,
-  DoubleSide,
   GridHelper,
   Group,
   HemisphereLight,
-  InstancedMesh,
-  LineBasicMaterial,
-  LineSegments,
   Matrix4,
-  Mesh,
-  MeshBasicMaterial,
-  MeshLambertMaterial,
-  PerspectiveCamera,
-  Points,
-  PointsMaterial,
   Raycaster,
   Scene,
-  SphereGeometry,
-  SRGBColorSpace,
   Vector2,
   Vector3,
-  WebGLRenderer,
 } from "three";
-import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { acceleratedRaycast, computeBoundsTree, disposeBoundsTree } from "three-mesh-bvh";
 import type { Keypoint, Matrix, Mesh as MeshData, ScanData, Vec3 } from "../core/types";
-import { confidenceColour, viridis } from "../result/colours";
 import { columnMajor } from "../result/transform";
 import type { ViewOptions } from "../ui/state";
 import { bodyAxes, disposeAxes } from "./axes";
+import { Graphics } from "./graphics";
+import {
+  bodyObject,
+  clear,
+  keypointObject,
+  paintErrors,
+  type Surface,
+  scanObject,
+  skeletonObjects,
+} from "./parts";
+import { type Direction, Viewpoint } from "./viewpoint";
 
-BufferGeometry.prototype.computeBoundsTree = computeBoundsTree;
-BufferGeometry.prototype.disposeBoundsTree = disposeBoundsTree;
-Mesh.prototype.raycast = acceleratedRaycast;
-
-const SCAN_COLOUR = 0xb9bcc2;
-const BODY_COLOUR = 0xe0a458;
-const SKELETON_COLOUR = 0xb3261e;
-const COMPILE_MS = 150;
-const KEYPOINT_RADIUS_M = 0.014;
-/** Parent of each of the 24 joints, in SMPL's order; the root has none. */
-const PARENTS = [-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19, 20, 21];
-
-export type Direction = "front" | "back" | "left" | "right" | "top";
+export type { Direction } from "./viewpoint";
 
 export class Viewer {
-  private readonly renderer: WebGLRenderer;
+  private readonly graphics: Graphics;
+  private readonly viewpoint: Viewpoint;
   private readonly scene = new Scene();
-  private readonly camera = new PerspectiveCamera(35, 1, 0.01, 100);
-  private readonly controls: OrbitControls;
   private readonly scanRoot = new Group();
   private readonly scanOrigin = new Vector3();
   private readonly bodyRoot = new Group();
@@ -66,24 +45,16 @@ export class Viewer {
   private options: ViewOptions | null = null;
   private legendMaximumMm = 10;
   private errorsMm: Float32Array | null = null;
-  private frame = 0;
-  /** Whether materials may have come that the graphics driver has not seen. */
-  private uncompiled = true;
-
   /** @throws Error when the browser has no WebGL. */
   constructor(private readonly canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.renderer.outputColorSpace = SRGBColorSpace;
-    this.renderer.setScissorTest(true);
-    // Asking the driver whether it is content would wait for it.
-    this.renderer.debug.checkShaderErrors = false;
+    this.viewpoint = new Viewpoint(canvas, () => this.request());
+    this.graphics = new Graphics(canvas, this.scene, this.viewpoint.camera, () => this.paintPanes());
     this.scanRoot.matrixAutoUpdate = false;
     const key = new DirectionalLight(0xffffff, 1.4);
     key.position.set(0.6, 1, 1);
-    this.camera.add(key);
+    this.viewpoint.camera.add(key);
     this.scene.add(
-      this.camera,
+      this.viewpoint.camera,
       new AmbientLight(0xffffff, 0.7),
       new HemisphereLight(0xffffff, 0x777788, 1.1),
       this.scanRoot,
@@ -94,8 +65,6 @@ export class Viewer {
       this.grid,
     );
     this.grid.visible = false;
-    this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.addEventListener("change", () => this.request());
     this.observer = new ResizeObserver(() => this.request());
     this.observer.observe(canvas);
     this.look("front");
@@ -111,27 +80,16 @@ export class Viewer {
 
   /** @param scan null removes it */
   setScan(scan: ScanData | null): void {
-    this.uncompiled = true;
     clear(this.scanRoot);
     const mesh = scan?.mesh;
     this.scanOrigin.set(...(scan?.origin ?? ([0, 0, 0] as const)));
     if (mesh && mesh.positions.length > 0) {
-      const geometry = geometryOf(mesh);
-      if (mesh.indices.length > 0) {
-        this.scanRoot.add(
-          new Mesh(
-            geometry,
-            new MeshLambertMaterial({ color: SCAN_COLOUR, side: DoubleSide, transparent: true }),
-          ),
-        );
-      } else {
-        const material = new PointsMaterial({ color: SCAN_COLOUR, size: 1.5, sizeAttenuation: false });
-        this.scanRoot.add(new Points(geometry, material));
-      }
+      this.scanRoot.add(scanObject(mesh));
       this.setBodyFromScan(null);
       this.fit();
     }
     this.apply();
+    this.request(true);
   }
 
   /** @param matrix null: not known yet; the scan is then shown on its own axes, scaled to a person's size */
@@ -163,69 +121,33 @@ export class Viewer {
   setBody(mesh: MeshData | null, errorsMm: Float32Array | null): void {
     clear(this.bodyRoot);
     this.errorsMm = errorsMm;
-    if (mesh && mesh.positions.length > 0) {
-      const material = new MeshLambertMaterial({ color: BODY_COLOUR, side: DoubleSide, transparent: true });
-      const geometry = geometryOf({ ...mesh, indices: mesh.indices.slice() });
-      // Only the body is picked. The tree reorders the triangles, hence the copy; a large scan's would hold up the page.
-      geometry.computeBoundsTree();
-      this.bodyRoot.add(new Mesh(geometry, material));
-    }
+    if (mesh && mesh.positions.length > 0) this.bodyRoot.add(bodyObject(mesh));
     this.paint();
     this.apply();
   }
 
   setKeypoints(keypoints: readonly Keypoint[]): void {
-    this.uncompiled = true;
     clear(this.keypointRoot);
-    const seen = keypoints.filter((keypoint) => keypoint.position_m !== null);
-    if (seen.length > 0) {
-      const geometry = new SphereGeometry(KEYPOINT_RADIUS_M, 16, 12);
-      const dots = new InstancedMesh(geometry, new MeshBasicMaterial({ depthTest: false }), seen.length);
-      dots.renderOrder = 1;
-      seen.forEach((keypoint, i) => {
-        dots.setMatrixAt(i, new Matrix4().makeTranslation(new Vector3(...keypoint.position_m!)));
-        dots.setColorAt(i, new Color(confidenceColour(keypoint.confidence).replaceAll(" ", ",")));
-      });
-      this.keypointRoot.add(dots);
-    }
-    this.request();
+    const dots = keypointObject(keypoints);
+    if (dots) this.keypointRoot.add(dots);
+    this.request(true);
   }
 
   /** @param joints of the 24, body frame; none removes the skeleton */
   setSkeleton(joints: readonly Vec3[]): void {
-    this.uncompiled = true;
     clear(this.skeletonRoot);
-    if (joints.length >= PARENTS.length) {
-      const ends = PARENTS.flatMap((parent, joint) =>
-        parent < 0 ? [] : [...joints[parent]!, ...joints[joint]!],
-      );
-      const bones = new BufferGeometry().setAttribute(
-        "position",
-        new BufferAttribute(new Float32Array(ends), 3),
-      );
-      const dots = new BufferGeometry().setAttribute(
-        "position",
-        new BufferAttribute(new Float32Array(joints.flat()), 3),
-      );
-      const look = { color: SKELETON_COLOUR, depthTest: false, transparent: true };
-      this.skeletonRoot.add(
-        new LineSegments(bones, new LineBasicMaterial(look)),
-        new Points(dots, new PointsMaterial({ ...look, size: 7, sizeAttenuation: false })),
-      );
-      for (const part of this.skeletonRoot.children) part.renderOrder = 2;
-    }
-    this.request();
+    for (const part of skeletonObjects(joints)) this.skeletonRoot.add(part);
+    this.request(true);
   }
 
   /** Shows the body's directions beside the aligned scan. */
   setAxes(shown: boolean): void {
-    this.uncompiled = true;
     disposeAxes(this.axesRoot);
     if (shown) {
       this.axesRoot.add(bodyAxes(new Box3().setFromObject(this.scanRoot)));
       this.fit();
     }
-    this.request();
+    this.request(true);
   }
 
   setOptions(options: ViewOptions, legendMaximumMm: number): void {
@@ -238,14 +160,7 @@ export class Viewer {
 
   /** Turns the camera to a side of the body, everything in sight. */
   look(direction: Direction): void {
-    const from = {
-      front: [0, 0, 1],
-      back: [0, 0, -1],
-      left: [1, 0, 0],
-      right: [-1, 0, 0],
-      top: [0, 1, 0.001],
-    }[direction] as [number, number, number];
-    this.camera.position.copy(this.controls.target).add(new Vector3(...from));
+    this.viewpoint.turnTo(direction);
     this.fit();
   }
 
@@ -255,49 +170,31 @@ export class Viewer {
     for (const root of [this.scanRoot, this.bodyRoot, this.axesRoot]) {
       if (root.visible && root.children.length > 0) box.union(new Box3().setFromObject(root));
     }
-    if (box.isEmpty()) box.set(new Vector3(-0.5, -0.9, -0.2), new Vector3(0.5, 0.9, 0.2));
-    const centre = box.getCenter(new Vector3());
-    const size = box.getSize(new Vector3());
-    const aspect = this.aspect();
-    const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    const width = Math.hypot(size.x, size.z);
-    const distance = Math.max(size.y / 2 / half, width / 2 / half / aspect) * 1.12 + width / 2;
-    const direction = this.camera.position.clone().sub(this.controls.target).normalize();
-    this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(direction, distance);
-    this.controls.update();
+    this.viewpoint.fit(box, this.aspect());
     this.request();
   }
 
   /** Turns the camera round the body by angles in radians. */
   orbit(azimuth: number, elevation: number): void {
-    const offset = this.camera.position.clone().sub(this.controls.target);
-    offset.applyAxisAngle(new Vector3(0, 1, 0), azimuth);
-    const side = new Vector3().crossVectors(new Vector3(0, 1, 0), offset).normalize();
-    const turned = offset.clone().applyAxisAngle(side, -elevation);
-    if (Math.abs(turned.clone().normalize().y) < 0.99) offset.copy(turned);
-    this.camera.position.copy(this.controls.target).add(offset);
-    this.controls.update();
+    this.viewpoint.orbit(azimuth, elevation);
     this.request();
   }
 
   /** @param factor above 1: nearer */
   zoom(factor: number): void {
-    const offset = this.camera.position.clone().sub(this.controls.target).divideScalar(factor);
-    this.camera.position.copy(this.controls.target).add(offset);
-    this.controls.update();
+    this.viewpoint.zoom(factor);
     this.request();
   }
 
   /** Vertex of the body nearest to what lies under a point of the canvas (CSS pixels from its upper left corner). */
   pickBody(x: number, y: number): number | null {
-    const mesh = this.bodyRoot.children[0] as Mesh | undefined;
+    const mesh = this.bodyRoot.children[0] as Surface | undefined;
     const { left, width, height } = this.pane(x);
     if (!mesh || !this.options?.showBody || (this.options.split && left === 0)) return null;
     const pointer = new Vector2(((x - left) / width) * 2 - 1, 1 - (y / height) * 2);
     const caster = new Raycaster();
     caster.firstHitOnly = true;
-    caster.setFromCamera(pointer, this.camera);
+    caster.setFromCamera(pointer, this.viewpoint.camera);
     const hit = caster.intersectObject(mesh)[0];
     if (!hit?.face) return null;
     const position = mesh.geometry.getAttribute("position");
@@ -307,12 +204,11 @@ export class Viewer {
   }
 
   dispose(): void {
-    cancelAnimationFrame(this.frame);
     this.observer.disconnect();
-    this.controls.dispose();
+    this.viewpoint.controls.dispose();
     for (const root of [this.scanRoot, this.bodyRoot, this.keypointRoot, this.skeletonRoot]) clear(root);
     disposeAxes(this.axesRoot);
-    this.renderer.dispose();
+    this.graphics.dispose();
   }
 
   private aspect(): number {
@@ -330,24 +226,11 @@ export class Viewer {
 
   /** Body colours: the error scale, or plain. */
   private paint(): void {
-    this.uncompiled = true;
-    const mesh = this.bodyRoot.children[0] as Mesh<BufferGeometry, MeshLambertMaterial> | undefined;
-    if (!mesh) return;
+    const body = this.bodyRoot.children[0] as Surface | undefined;
+    if (!body) return;
     const coloured = this.options?.heatMap === true && this.errorsMm !== null && this.errorsMm.length > 0;
-    if (coloured) {
-      const colours = new Float32Array(this.errorsMm!.length * 3);
-      const colour = new Color();
-      this.errorsMm!.forEach((error, i) => {
-        colour.setRGB(...viridis(error / this.legendMaximumMm), SRGBColorSpace).toArray(colours, 3 * i);
-      });
-      mesh.geometry.setAttribute("color", new BufferAttribute(colours, 3));
-    } else {
-      mesh.geometry.deleteAttribute("color");
-    }
-    mesh.material.vertexColors = coloured;
-    mesh.material.color.set(coloured ? 0xffffff : BODY_COLOUR);
-    mesh.material.needsUpdate = true;
-    this.request();
+    paintErrors(body, coloured ? this.errorsMm : null, this.legendMaximumMm);
+    this.request(true);
   }
 
   private apply(): void {
@@ -360,7 +243,7 @@ export class Viewer {
       [this.scanRoot, options.scanOpacity],
       [this.bodyRoot, options.bodyOpacity],
     ] as const) {
-      const object = root.children[0] as Mesh<BufferGeometry, MeshLambertMaterial> | undefined;
+      const object = root.children[0] as Surface | undefined;
       if (!object) continue;
       object.material.opacity = opacity;
       object.material.transparent = opacity < 1;
@@ -371,75 +254,31 @@ export class Viewer {
     this.request();
   }
 
-  private request(): void {
-    if (this.frame === 0) {
-      this.frame = requestAnimationFrame(() => {
-        this.frame = 0;
-        this.draw();
-      });
-    }
+  /** @param fresh materials or geometries came */
+  private request(fresh = false): void {
+    this.graphics.request(fresh);
   }
 
-  /** Lets the driver compile what is new without anyone waiting, then draws. */
-  private compile(): void {
-    this.uncompiled = false;
-    const draw = () => this.request();
-    if (this.renderer.extensions.has("KHR_parallel_shader_compile")) {
-      this.renderer.compileAsync(this.scene, this.camera).then(draw, draw);
-    } else {
-      // Such a driver does not tell when it is ready.
-      this.renderer.compile(this.scene, this.camera);
-      setTimeout(draw, COMPILE_MS);
-    }
-  }
-
-  private draw(): void {
-    if (this.uncompiled) {
-      this.compile();
-      return;
-    }
+  private paintPanes(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (width === 0 || height === 0) return;
-    this.renderer.setSize(width, height, false);
-    this.camera.aspect = this.aspect();
-    this.camera.updateProjectionMatrix();
+    this.viewpoint.setAspect(this.aspect());
     if (!this.options?.split) {
-      this.drawPane(0, width, height);
+      this.paintPane(0, width, height);
       return;
     }
     const { scanRoot, bodyRoot } = this;
     const shown = [scanRoot.visible, bodyRoot.visible] as const;
     [scanRoot.visible, bodyRoot.visible] = [true, false];
-    this.drawPane(0, width / 2, height);
+    this.paintPane(0, width / 2, height);
     [scanRoot.visible, bodyRoot.visible] = [false, true];
-    this.drawPane(width / 2, width / 2, height);
+    this.paintPane(width / 2, width / 2, height);
     [scanRoot.visible, bodyRoot.visible] = shown;
   }
 
-  private drawPane(left: number, width: number, height: number): void {
-    this.renderer.setViewport(left, 0, width, height);
-    this.renderer.setScissor(left, 0, width, height);
-    this.renderer.render(this.scene, this.camera);
-  }
-}
-
-function geometryOf({ positions, normals, indices }: MeshData): BufferGeometry {
-  const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(positions, 3));
-  if (indices.length > 0) {
-    geometry.setIndex(new BufferAttribute(indices, 1));
-    if (normals) geometry.setAttribute("normal", new BufferAttribute(normals, 3));
-    else geometry.computeVertexNormals();
-  }
-  return geometry;
-}
-
-function clear(root: Group): void {
-  for (const child of [...root.children]) {
-    const { geometry, material } = child as Mesh;
-    geometry.disposeBoundsTree?.();
-    geometry.dispose();
-    for (const each of [material].flat()) each.dispose();
-    root.remove(child);
+  private paintPane(left: number, width: number, height: number): void {
+    const { renderer } = this.graphics;
+    renderer.setViewport(left, 0, width, height);
+    renderer.setScissor(left, 0, width, height);
+    renderer.render(this.scene, this.viewpoint.camera);
   }
 }
