@@ -14,3 +14,26 @@ if(VITRUVIAN_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
 endif()
+
+# A precompiled header of what nearly every file includes. A compiler cache does better by itself and cannot cache such files.
+if(CMAKE_CXX_COMPILER_LAUNCHER)
+  set(precompile OFF)
+else()
+  set(precompile ON)
+endif()
+option(VITRUVIAN_PRECOMPILE "Precompile Eigen's and the standard library's headers" ${precompile})
+
+# Lets TARGET use the precompiled header; the first target that asks makes it for all.
+function(vitruvian_precompile target)
+  if(NOT VITRUVIAN_PRECOMPILE)
+    return()
+  endif()
+  if(NOT TARGET vitruvian_precompiled)
+    file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cpp "")
+    add_library(vitruvian_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
+    target_link_libraries(vitruvian_precompiled PRIVATE third_party)
+    target_precompile_headers(vitruvian_precompiled PRIVATE <Eigen/Dense> <array> <cstdint> <functional> <memory>
+      <optional> <span> <stdexcept> <string> <string_view> <utility> <vector>)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM vitruvian_precompiled)
+endfunction()
