@@ -1,12 +1,26 @@
-# `cmake --install`: program, models and every notice.
+# `cmake --install`: program, models, every notice, and the shared libraries that the program needs, so that the folder
+# can be moved, and runs where nothing of this is installed. Everything is found relative to the program.
 include(GNUInstallDirs)
+option(VITRUVIAN_BUNDLE "Install the shared libraries that the program needs beside it" ON)
 if(TARGET vitruvian)
-  install(TARGETS vitruvian RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # An old-style RPATH also serves the libraries that the bundled ones need themselves; a RUNPATH would not.
+  target_link_options(vitruvian PRIVATE -Wl,--disable-new-dtags)
+  set_target_properties(vitruvian PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/vitruvian")
+  install(TARGETS vitruvian RUNTIME DESTINATION bin)
+  if(VITRUVIAN_BUNDLE)
+    install(CODE "set(program [[$<TARGET_FILE:vitruvian>]])
+      set(licences [[${CMAKE_INSTALL_DOCDIR}/licences/libraries]])
+      include([[${CMAKE_CURRENT_LIST_DIR}/Bundle.cmake]])")
+  endif()
+endif()
+if(TARGET vitruvian-launcher)
+  install(TARGETS vitruvian-launcher RUNTIME DESTINATION bin COMPONENT launcher EXCLUDE_FROM_ALL)
 endif()
 foreach(model generated/body.vbm generated/blazepose_detector.opencv.onnx generated/blazepose_landmarks.opencv.onnx
         pose_prior.vpp landmarks.json)
   install(FILES ${CMAKE_SOURCE_DIR}/models/${model} DESTINATION ${CMAKE_INSTALL_DATADIR}/vitruvian OPTIONAL)
 endforeach()
 install(FILES LICENSE THIRD_PARTY.md CITATION.cff CHANGELOG.md README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY scripts/licences DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY scripts/licences/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/licences)
 install(FILES models/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/models)
+install(DIRECTORY scripts/cluster/ DESTINATION ${CMAKE_INSTALL_DATADIR}/vitruvian/cluster USE_SOURCE_PERMISSIONS)
