@@ -13,8 +13,10 @@
 namespace vitruvian::wasm {
 namespace {
 
-/// Vertices that the view draws at most; larger scans are thinned.
-constexpr int kShownVertices = 150'000;
+/// Scans with more vertices are shown thinned, to about so many: more than a screen shows of a person, and
+/// few enough to go to a graphics card at once.
+constexpr int kLargestWhole = 100'000;
+constexpr int kThinned = 60'000;
 
 std::string mesh_text(const Registration& registration, const std::string& format) {
   MeshView mesh{registration.registered_vertices, registration.registered_faces};
@@ -76,7 +78,8 @@ void Session::open(Buffer file, std::string name) {
     *held = Buffer();
     read_ms_ = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
     const Points3f normals = Points3f::Zero(3, scan.vertices.cols());
-    shown_ = cluster_decimate(scan.vertices, normals, scan.faces, kShownVertices);
+    shown_ = cluster_decimate(scan.vertices, normals, scan.faces,
+                              scan.vertices.cols() > kLargestWhole ? kThinned : kLargestWhole);
     shown_.normals = vertex_normals(shown_.vertices, shown_.faces);
     scan_ = std::make_shared<const Scan>(std::move(scan));
   });

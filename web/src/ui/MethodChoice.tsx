@@ -87,7 +87,7 @@ interface CountProps {
 
 function Count({ label, value, least, onChange }: CountProps) {
   return (
-    <label class="number">
+    <label class="count">
       {label}
       <input
         type="number"

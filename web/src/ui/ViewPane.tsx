@@ -1,6 +1,7 @@
 import { useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { millimetres } from "../result/format";
+import { startViewer } from "../viewer/start";
 import type { Direction, Viewer } from "../viewer/viewer";
 import { Legend } from "./Legend";
 import * as state from "./state";
@@ -15,25 +16,14 @@ const SIDES: [Direction, string][] = [
   ["top", "Top"],
 ];
 
-const turn = () => new Promise((resolve) => setTimeout(resolve));
-
-/** Program, graphics context and scene, each in a turn of the page of its own. @throws Error without WebGL */
-async function startViewer(canvas: HTMLCanvasElement): Promise<Viewer> {
-  const { Viewer } = await import("../viewer/viewer");
-  await turn();
-  const viewer = new Viewer(canvas);
-  await turn();
-  return viewer;
-}
-
 /** The 3D view with its toolbar and legend. three.js is loaded when the first scan is opened. */
 export function ViewPane() {
   const canvas = useRef<HTMLCanvasElement>(null);
   const viewer = useSignal<Viewer | null>(null);
   const failed = useSignal("");
   const hasScan = state.scan.value !== null;
-  // While a scan is being read the graphics card can get ready.
-  const wanted = hasScan || state.busy.value !== null;
+  // While a scan is being read, and the page has nothing else to do, the graphics card can get ready.
+  const wanted = hasScan || (state.busy.value !== null && state.core.value !== null);
 
   const begun = useRef(false);
   useEffect(() => {

@@ -23,6 +23,15 @@ interface Compiled {
   currentProgram?: { getUniforms(): unknown; getAttributes(): unknown };
 }
 
+/** The canvas's graphics context, with hardly any memory yet. @throws Error when the browser has no WebGL. */
+export function createContext(canvas: HTMLCanvasElement): WebGL2RenderingContext {
+  [canvas.width, canvas.height] = [1, 1];
+  // As three.js asks for it.
+  const context = canvas.getContext("webgl2", { alpha: true, antialias: true, stencil: false });
+  if (!context) throw new Error("no WebGL 2");
+  return context;
+}
+
 export class Graphics {
   readonly renderer: WebGLRenderer;
   private frame = 0;
@@ -32,14 +41,15 @@ export class Graphics {
   private disposed = false;
   private readonly uploaded = new WeakSet<BufferGeometry>();
 
-  /** @param paint draws the panes. @throws Error when the browser has no WebGL. */
+  /** @param context from createContext(). @param paint draws the panes. */
   constructor(
     private readonly canvas: HTMLCanvasElement,
+    context: WebGL2RenderingContext,
     private readonly scene: Scene,
     private readonly camera: Camera,
     private readonly paint: () => void,
   ) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer = new WebGLRenderer({ canvas, context, antialias: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.outputColorSpace = SRGBColorSpace;
     this.renderer.setScissorTest(true);

@@ -28,6 +28,7 @@ import {
 } from "./parts";
 import { type Direction, Viewpoint } from "./viewpoint";
 
+export { createContext } from "./graphics";
 export type { Direction } from "./viewpoint";
 
 export class Viewer {
@@ -45,10 +46,13 @@ export class Viewer {
   private options: ViewOptions | null = null;
   private legendMaximumMm = 10;
   private errorsMm: Float32Array | null = null;
-  /** @throws Error when the browser has no WebGL. */
-  constructor(private readonly canvas: HTMLCanvasElement) {
+  /** @param context of the canvas, from createContext(). */
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    context: WebGL2RenderingContext,
+  ) {
     this.viewpoint = new Viewpoint(canvas, () => this.request());
-    this.graphics = new Graphics(canvas, this.scene, this.viewpoint.camera, () => this.paintPanes());
+    this.graphics = new Graphics(canvas, context, this.scene, this.viewpoint.camera, () => this.paintPanes());
     this.scanRoot.matrixAutoUpdate = false;
     const key = new DirectionalLight(0xffffff, 1.4);
     key.position.set(0.6, 1, 1);
