@@ -9,6 +9,29 @@
 namespace vitruvian {
 namespace {
 
+/// What a project file holds.
+constexpr const char* kInProject[] = {"--method",
+                                      "--align",
+                                      "--views",
+                                      "--min-visibility",
+                                      "--init",
+                                      "--solver",
+                                      "--iterations",
+                                      "--adam-iterations",
+                                      "--one-directional",
+                                      "--chunk",
+                                      "--gender",
+                                      "--betas",
+                                      "--units",
+                                      "--up",
+                                      "--front",
+                                      "--align-file",
+                                      "--keypoints",
+                                      "--regions",
+                                      "--crop",
+                                      "--detail",
+                                      "--seed"};
+
 /// Adds an option whose values are the names of an enumeration.
 template <typename Enum>
 CLI::Option* add_choice(CLI::App& command, const std::string& name, Enum& target, const std::string& help) {
@@ -91,15 +114,12 @@ void add_scan_options(CLI::App& command, RegisterArguments& a) {
   command.add_option("--keypoints", a.keypoints_file, "joints placed by hand, used instead of looking")
       ->type_name("FILE");
   command.add_option("--regions", a.regions_file, "pairs of regions that belong together")->type_name("FILE");
-  const std::vector<std::pair<const char*, const char*>> edits = {
-      {"--crop", "what to leave out of the scan"},
-      {"--project", "all of these in one file, as the page saves it"}};
-  for (const auto& [name, help] : edits) {
-    command
-        .add_option_function<std::string>(
-            name, [](const std::string&) {}, help)
-        ->type_name("FILE");
-  }
+  command.add_option("--crop", a.crop_file, "what to cut away from the scan, boxes and lassos")
+      ->type_name("FILE");
+  command
+      .add_option("--project", a.project_file,
+                  "settings and edits in one file, as the page saves it; replaces the options above")
+      ->type_name("FILE");
 }
 
 void add_output_options(CLI::App& command, RegisterArguments& a) {
@@ -126,8 +146,8 @@ void add_output_options(CLI::App& command, RegisterArguments& a) {
 }
 
 void settle_register(const CLI::App& command, const Pending& pending, RegisterArguments& a) {
-  for (const char* name : {"--crop", "--project"}) {
-    if (command.count(name) > 0) a.not_available.emplace_back(name);
+  for (const char* name : kInProject) {
+    if (command.count(name) > 0) a.decided.emplace_back(name);
   }
   // The method's stages, but for those that were given.
   const Settings method = settings_of(a.settings.method);

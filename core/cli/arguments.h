@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "cli/measure_arguments.h"
+#include "editor/project.h"
 #include "pipeline/settings.h"
 
 namespace vitruvian {
@@ -23,13 +25,16 @@ struct RegisterArguments {
   std::string align_file;
   std::string keypoints_file;
   std::string regions_file;
-  std::string dmpl_file;   ///< empty: no soft tissue
-  std::string prior_file;  ///< empty: the bundled pose prior
+  std::string crop_file;
+  std::string project_file;
+  /// Options that were given and decide a registration: a project says all of them itself.
+  std::vector<std::string> decided;
+  std::optional<Project> project;  ///< of --project, once it is read
+  std::string dmpl_file;           ///< empty: no soft tissue
+  std::string prior_file;          ///< empty: the bundled pose prior
   MeshFormat format = MeshFormat::ply;
   bool quiet = false;
   bool json = false;
-  /// Options that were given, are documented, and have no implementation in this build.
-  std::vector<std::string> not_available;
 };
 
 /// `vitruvian evaluate`.

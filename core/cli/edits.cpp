@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "io/file.h"
+#include "pipeline/crop.h"
 #include "pipeline/regions.h"
 #include "pipeline/result_json.h"
 #include "pipeline/result_json_keypoints.h"
@@ -25,10 +26,28 @@ StartBody read_start(const std::string& path) {
   return {std::move(*registration.parameters), registration.model.sha256};
 }
 
+void check_alone(const RegisterArguments& arguments) {
+  if (!arguments.decided.empty()) {
+    throw Error(ErrorCode::usage,
+                "--project says already what " + arguments.decided.front() + " says: leave that out");
+  }
+  if (arguments.scans.size() > 1)
+    throw Error(ErrorCode::usage, "--project belongs to one scan: give that alone");
+}
+
 }  // namespace
 
-Settings load_edits(const RegisterArguments& arguments) {
-  Settings settings = arguments.settings;
+RegisterArguments load_edits(const RegisterArguments& arguments) {
+  RegisterArguments loaded = arguments;
+  Settings& settings = loaded.settings;
+  if (!arguments.project_file.empty()) {
+    check_alone(arguments);
+    loaded.project = parse_project(text_of(arguments.project_file), arguments.project_file);
+    settings = with_edits(loaded.project->settings, loaded.project->edits);
+    settings.threads = arguments.settings.threads;
+  }
+  if (!arguments.crop_file.empty())
+    settings.crops = parse_crops(text_of(arguments.crop_file), arguments.crop_file);
   if (!arguments.align_file.empty())
     settings.body_from_scan = parse_alignment(text_of(arguments.align_file), arguments.align_file);
   if (!arguments.keypoints_file.empty())
@@ -39,7 +58,7 @@ Settings load_edits(const RegisterArguments& arguments) {
     settings.init = InitMode::file;
     settings.start = read_start(arguments.init_file);
   }
-  return settings;
+  return loaded;
 }
 
 }  // namespace vitruvian

@@ -178,6 +178,7 @@ class RegisterRun {
       const Clock::time_point begin = Clock::now();
       execution_.progress("read", 0);
       Scan scan = read_scan_file(scan_path, execution_);
+      if (arguments_.project) check_scan(*arguments_.project, scan);
       Registration registration =
           register_scan(std::move(scan), settings_, execution_, milliseconds_since(begin));
       // Last chance to stop: from here on the files are written without a pause.
@@ -247,14 +248,8 @@ class RegisterRun {
 }  // namespace
 
 ExitStatus run_register(const RegisterArguments& arguments, const CliContext& context) {
-  if (!arguments.not_available.empty()) {
-    std::string list;
-    for (const std::string& option : arguments.not_available) list += (list.empty() ? "" : ", ") + option;
-    throw Error(ErrorCode::not_available, list + ": not yet available in this version");
-  }
   const std::vector<std::string> folders = output_folders(arguments.scans, arguments.out);
-  RegisterArguments loaded = arguments;
-  loaded.settings = load_edits(arguments);
+  const RegisterArguments loaded = load_edits(arguments);
   const RegisterFunction register_scan = context.open_register(loaded);
   make_folders(loaded.out);
   return RegisterRun(loaded, context).run(folders, register_scan);

@@ -46,6 +46,7 @@ RegisterFactory native_register(std::vector<std::string> folders, const std::str
           return eyes->run(request);
         },
         setup));
+    if (arguments.project) check_model(*arguments.project, models->body);
     check_settings(arguments.settings, *models);
     return [=](Scan scan, const Settings& settings, const Execution& execution, double read_ms) {
       OpenCvNetworks networks(landmarks, detector, settings.threads);

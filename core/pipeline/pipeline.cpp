@@ -23,6 +23,15 @@ UnitCandidate fixed_unit(Unit unit, double extent) {
   return {to_string(unit), metres_per_unit(unit), extent * metres_per_unit(unit), 1.0};
 }
 
+/// Labels of those of the scan's vertices that were kept.
+void keep_labels(RegionLabels& labels, const std::vector<int>& kept) {
+  if (labels.scan.empty() || kept.empty()) return;
+  std::vector<int> of_kept;
+  of_kept.reserve(kept.size());
+  for (const int vertex : kept) of_kept.push_back(labels.scan[static_cast<std::size_t>(vertex)]);
+  labels.scan = std::move(of_kept);
+}
+
 /// Metres by which a stature lies outside the likely range.
 double stature_excess(double stature) {
   return std::max({0.0, kLeastStature - stature, stature - kLargestStature});
@@ -42,6 +51,11 @@ RegistrationPipeline::RegistrationPipeline(const Models& models, const Settings&
 RegistrationPipeline::~RegistrationPipeline() = default;
 
 void RegistrationPipeline::set_scan(std::shared_ptr<const Scan> scan) {
+  whole_ = std::move(scan);
+  prepare();
+}
+
+void RegistrationPipeline::prepare() {
   clock_ = StageClock();
   clock_.enter(&Timing::align);
   execution_.progress("align", 0);
@@ -50,7 +64,8 @@ void RegistrationPipeline::set_scan(std::shared_ptr<const Scan> scan) {
   attempts_.clear();
   search_ = Search();
   scan_.reset();
-  scan_ = std::make_unique<PreparedScan>(std::move(scan), execution_);
+  source_ = crop_scan(whole_, settings_.crops);
+  scan_ = std::make_unique<PreparedScan>(source_.scan, execution_);
   clock_.pause();
 }
 
@@ -61,6 +76,7 @@ void RegistrationPipeline::configure(const Settings& settings) {
   auto fit_model = std::make_unique<FitModel>(models_.body, models_.prior, settings.gender, settings.betas);
   forget(*affected);
   fit_model_ = std::move(fit_model);
+  if (settings_.crops != settings.crops) scan_.reset();
   settings_ = settings;
 }
 
@@ -125,9 +141,10 @@ bool RegistrationPipeline::find_placements(std::optional<NetworkRequest>& reques
 
 std::optional<NetworkRequest> RegistrationPipeline::next_request(PipelineStage until) {
   execution_.check();
-  if (!scan_) throw Error(ErrorCode::internal, "the pipeline has no scan");
+  if (!whole_) throw Error(ErrorCode::internal, "the pipeline has no scan");
   std::optional<NetworkRequest> request;
   try {
+    if (!scan_) prepare();
     request = work(until);
   } catch (...) {
     clock_.pause();
@@ -141,8 +158,8 @@ std::optional<NetworkRequest> RegistrationPipeline::next_request(PipelineStage u
 std::optional<NetworkRequest> RegistrationPipeline::work(PipelineStage until) {
   std::optional<NetworkRequest> request;
   // Told at once when they were painted on another scan.
-  regions_ =
-      settings_.regions ? region_labels(*settings_.regions, scan_->scan, models_.body) : RegionLabels();
+  regions_ = settings_.regions ? region_labels(*settings_.regions, *whole_, models_.body) : RegionLabels();
+  keep_labels(regions_, source_.kept);
   if (attempts_.empty() && !find_placements(request)) return request;
   for (const PipelineStage stage : {PipelineStage::align, PipelineStage::keypoints, PipelineStage::pose}) {
     clock_.work_for(stage);
@@ -276,6 +293,8 @@ Registration RegistrationPipeline::finish() {
   input.stature = best.stature;
   input.begin_stage = [this](double Timing::*stage) { clock_.enter(stage); };
   Registration registration = make_outcome(input, execution_);
+  registration.scan.vertices = static_cast<long>(whole_->vertices.cols());
+  registration.scan.faces = static_cast<long>(whole_->faces.cols());
   clock_.pause();
   registration.timing_ms = clock_.sum();
   registration.timing_ms.read = read_ms_;

@@ -12,6 +12,7 @@
 #include "fit/region_labels.h"
 #include "keypoints/network.h"
 #include "pipeline/attempt.h"
+#include "pipeline/crop.h"
 #include "pipeline/given_keypoints.h"
 #include "pipeline/landmark_stage.h"
 #include "pipeline/models.h"
@@ -49,7 +50,7 @@ class RegistrationPipeline {
   /// @throws Error(no_geometry), Error(cancelled).
   void set_scan(Scan scan) { set_scan(std::make_shared<const Scan>(std::move(scan))); }
   void set_scan(std::shared_ptr<const Scan> scan);
-  bool has_scan() const { return scan_ != nullptr; }
+  bool has_scan() const { return whole_ != nullptr; }
   /// @param read_ms  time spent on reading the file, for the report.
   void set_read_time(double read_ms) { read_ms_ = read_ms; }
 
@@ -89,7 +90,7 @@ class RegistrationPipeline {
   /// The body that the fit starts from, body frame. @throws Error(internal) before the pose is reached.
   const BodyState& initial_pose() const;
 
-  /// Valid after set_scan().
+  /// What is left of the scan after cropping. Valid after set_scan(), until crops are changed.
   const PreparedScan& prepared() const { return *scan_; }
 
  private:
@@ -114,6 +115,7 @@ class RegistrationPipeline {
     Search();
   };
 
+  void prepare();
   std::optional<NetworkRequest> work(PipelineStage until);
   bool find_placements(std::optional<NetworkRequest>& request);
   AttemptContext context();
@@ -132,7 +134,9 @@ class RegistrationPipeline {
   const Execution& execution_;
   std::unique_ptr<FitModel> fit_model_;
 
-  std::unique_ptr<PreparedScan> scan_;
+  std::shared_ptr<const Scan> whole_;   // as it was set
+  CroppedScan source_;                  // what the crops leave of it
+  std::unique_ptr<PreparedScan> scan_;  // of that; none when the crops were changed
   std::unique_ptr<ViewSurface> detector_surface_;
   std::unique_ptr<UpDetector> up_detector_;  // knows the scan alone: no setting makes it look again
   UnitGuess units_;

@@ -29,6 +29,21 @@ KeypointSet parse_keypoints(std::string_view text, const std::string& file_name)
   return keypoint_set_from_json(JsonValue(json, file_name, ""));
 }
 
+KeypointSet::Joint keypoint_joint_from_json(const JsonValue& value) {
+  KeypointSet::Joint joint;
+  joint.position = value.at("position").vector3();
+  if (value.has("confidence")) {
+    joint.confidence = value.at("confidence").number();
+    if (joint.confidence < 0 || joint.confidence > 1) value.at("confidence").fail("0 to 1 is expected");
+  }
+  return joint;
+}
+
+ordered_json keypoint_joint_to_json(const KeypointSet::Joint& joint) {
+  const Vec3d& p = joint.position;
+  return {{"position", {p.x(), p.y(), p.z()}}, {"confidence", joint.confidence}};
+}
+
 KeypointSet keypoint_set_from_json(const JsonValue& document) {
   KeypointSet keypoints;
   const std::string frame = document.at("frame").text();
@@ -37,13 +52,7 @@ KeypointSet keypoint_set_from_json(const JsonValue& document) {
   keypoints.frame = static_cast<KeypointFrame>(found - kFrameNames.begin());
   document.at("joints").for_each_member([&](const std::string& name, const JsonValue& value) {
     if (!is_keypoint_joint(name)) value.fail("this is none of the 22 SMPL joints");
-    KeypointSet::Joint joint;
-    joint.position = value.at("position").vector3();
-    if (value.has("confidence")) {
-      joint.confidence = value.at("confidence").number();
-      if (joint.confidence < 0 || joint.confidence > 1) value.at("confidence").fail("0 to 1 is expected");
-    }
-    keypoints.joints.emplace(name, joint);
+    keypoints.joints.emplace(name, keypoint_joint_from_json(value));
   });
   if (keypoints.joints.empty()) document.at("joints").fail("there is no joint");
   return keypoints;
@@ -54,8 +63,7 @@ ordered_json keypoint_set_to_json(const KeypointSet& keypoints) {
   for (std::size_t j = 0; j < kKeypointJoints; ++j) {
     const auto found = keypoints.joints.find(std::string(kSmplJointNames[j]));
     if (found == keypoints.joints.end()) continue;
-    const Vec3d& p = found->second.position;
-    joints[found->first] = {{"position", {p.x(), p.y(), p.z()}}, {"confidence", found->second.confidence}};
+    joints[found->first] = keypoint_joint_to_json(found->second);
   }
   ordered_json document;
   document["frame"] = kFrameNames[static_cast<std::size_t>(keypoints.frame)];

@@ -21,6 +21,10 @@ KeypointSet parse_keypoints(std::string_view text, const std::string& file_name)
 KeypointSet keypoint_set_from_json(const JsonValue& value);
 nlohmann::ordered_json keypoint_set_to_json(const KeypointSet& keypoints);
 
+/// The same of one joint: `{"position", "confidence"}`, confidence 1 when it is missing.
+KeypointSet::Joint keypoint_joint_from_json(const JsonValue& value);
+nlohmann::ordered_json keypoint_joint_to_json(const KeypointSet::Joint& joint);
+
 /// Joints in SMPL order.
 std::string keypoints_json(const KeypointSet& keypoints, JsonStyle style);
 

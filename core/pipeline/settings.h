@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "body/model.h"
+#include "geometry/cut_volume.h"
 #include "pipeline/edits.h"
 
 namespace vitruvian {
@@ -43,6 +45,7 @@ struct Settings {
   std::optional<Mat4d> body_from_scan;   ///< given instead of found; unit factor included
   std::optional<KeypointSet> keypoints;  ///< given instead of detected
   std::optional<StartBody> start;        ///< with InitMode::file
+  std::vector<CutVolume> crops;          ///< cut away from the scan before anything else
   std::optional<RegionSet> regions;      ///< pairs that are matched with each other only
 
   bool operator==(const Settings&) const = default;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "pipeline/crop.h"
 #include "pipeline/regions.h"
 #include "pipeline/result_json_keypoints.h"
 #include "pipeline/settings_names.h"
@@ -21,6 +22,7 @@ constexpr std::int64_t kLargestCount = 1'000'000;
 
 void add_edits(ordered_json& result, const Settings& settings) {
   if (settings.body_from_scan) result["body_from_scan"] = rows(*settings.body_from_scan);
+  if (!settings.crops.empty()) result["crops"] = crops_to_json(settings.crops);
   if (settings.keypoints) result["keypoints"] = keypoint_set_to_json(*settings.keypoints);
   if (settings.regions) result["regions"] = regions_to_json(*settings.regions);
   if (settings.start) {
@@ -70,11 +72,13 @@ constexpr SettingReader kReaders[] = {
     {"threads", read_whole<&Settings::threads, 0, 4096>},
     {"seed", read_whole<&Settings::seed, 0, std::numeric_limits<std::uint32_t>::max()>},
 };
-constexpr std::array<std::string_view, 4> kEdits = {"body_from_scan", "keypoints", "regions", "start"};
+constexpr std::array<std::string_view, 5> kEdits = {"body_from_scan", "crops", "keypoints", "regions",
+                                                    "start"};
 
 void read_edits(const JsonValue& value, Settings& settings) {
   if (given(value, "body_from_scan"))
     settings.body_from_scan = alignment_from_json(value.at("body_from_scan"));
+  if (given(value, "crops")) settings.crops = crops_from_json(value.at("crops"));
   if (given(value, "keypoints")) settings.keypoints = keypoint_set_from_json(value.at("keypoints"));
   if (given(value, "regions")) settings.regions = regions_from_json(value.at("regions"));
   if (given(value, "start")) {

@@ -32,7 +32,6 @@ TEST(Arguments, DefaultsAreTheSettings) {
   EXPECT_EQ(a.settings.seed, 1u);
   EXPECT_EQ(a.settings.betas, 0);
   EXPECT_EQ(a.format, MeshFormat::ply);
-  EXPECT_TRUE(a.not_available.empty());
   EXPECT_FALSE(a.quiet || a.json);
 }
 
@@ -58,7 +57,6 @@ TEST(Arguments, EverySettingIsTaken) {
   EXPECT_EQ(a.format, MeshFormat::glb);
   EXPECT_EQ(a.model_file, "m.vbm");
   EXPECT_TRUE(a.quiet && a.json);
-  EXPECT_TRUE(a.not_available.empty());
 }
 
 TEST(Arguments, NegativeAxesMayStandAfterEqualsToo) {
@@ -81,25 +79,23 @@ TEST(Arguments, WrongValuesAreRefusedByName) {
   EXPECT_NE(refusal({"--up", "w"}).find("vitruvian help register"), std::string::npos);
 }
 
-TEST(Arguments, OptionsWithoutAFeatureAreNamed) {
-  for (const std::vector<std::string>& options :
-       std::vector<std::vector<std::string>>{{"--crop", "f"}, {"--project", "f"}}) {
-    const std::vector<std::string> named = registering(options).not_available;
-    ASSERT_EQ(named.size(), 1u) << options[0];
-    EXPECT_EQ(named[0].rfind(options[0], 0), 0u) << named[0];
-  }
+TEST(Arguments, OptionsThatAProjectHoldsAreRemembered) {
+  EXPECT_TRUE(registering({"--threads", "2", "--format", "obj", "--project", "p"}).decided.empty());
+  EXPECT_EQ(registering({"--project", "p", "--seed", "2", "--views", "8"}).decided,
+            (std::vector<std::string>{"--views", "--seed"}));
 }
 
 TEST(Arguments, FilesOfEditsAreNamed) {
-  const RegisterArguments a =
-      registering({"--init", "old.json", "--keypoints", "k.json", "--align-file", "a.json"});
+  const RegisterArguments a = registering({"--init", "old.json", "--keypoints", "k.json", "--align-file",
+                                           "a.json", "--crop", "c.json", "--project", "p.json"});
   EXPECT_EQ(a.init_file, "old.json");
   EXPECT_EQ(a.keypoints_file, "k.json");
   EXPECT_EQ(a.align_file, "a.json");
+  EXPECT_EQ(a.crop_file, "c.json");
+  EXPECT_EQ(a.project_file, "p.json");
   EXPECT_EQ(registering({"--init", "tpose"}).settings.init, InitMode::tpose);
   EXPECT_EQ(registering({"--init", "tpose"}).init_file, "");
   EXPECT_EQ(registering({"--init", "file"}).init_file, "file") << "a file of that name";
-  EXPECT_TRUE(a.not_available.empty());
 }
 
 TEST(Arguments, MethodsStandForTheirStages) {
