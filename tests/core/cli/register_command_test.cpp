@@ -196,6 +196,30 @@ TEST_F(RegisterCommand, FilesOfEditsReachTheRegistrationAndItsJson) {
   EXPECT_EQ(settings["start"]["betas"].size(), 32u);
 }
 
+TEST_F(RegisterCommand, ProjectIsReplayedOnItsOwnScanOnly) {
+  const std::string scan = write_scan("a.ply");
+  const std::string crops =
+      write("c.json", R"({"crops": [{"remove": "inside", "box": {"min": [5, 5, 5], "max": [6, 6, 6]}}]})");
+  ASSERT_EQ(run({"register", scan, "--out", path("first"), "--crop", crops, "--views", "2"}), 0) << error();
+  const json first = json::parse(read("first/a/registration.json"));
+  ASSERT_EQ(first["settings"]["crops"].size(), 1u);
+  json project = {{"vitruvian_project", 1},
+                  {"scan", {{"file", "a.ply"}, {"sha256", first["scan"]["sha256"]}}},
+                  {"settings", first["settings"]},
+                  {"edits", {{{"edit", "keypoints"}, {"keypoints", nullptr}}}}};
+  const std::string file = write("p.json", project.dump());
+  ASSERT_EQ(run({"register", scan, "--out", path("out"), "--project", file}), 0) << error();
+  EXPECT_EQ(json::parse(read("out/a/registration.json"))["settings"], first["settings"]);
+
+  const std::string twin = write("twin.ply", read("a.ply") + "\n");
+  EXPECT_EQ(run({"register", twin, "--out", path("out"), "--project", file}), 2);
+  EXPECT_TRUE(said("another scan (a.ply)")) << error();
+  EXPECT_EQ(run({"register", scan, "--out", path("out"), "--project", file, "--views", "2"}), 2);
+  EXPECT_TRUE(said("--views")) << error();
+  EXPECT_EQ(run({"register", scan, twin, "--out", path("out"), "--project", file}), 2);
+  EXPECT_TRUE(said("one scan")) << error();
+}
+
 TEST_F(RegisterCommand, UnusableFilesOfEditsGiveStatus2AndNameThePlace) {
   const std::string scan = write_scan("a.ply");
   ASSERT_EQ(run({"register", scan, "--out", path("first")}), 0);
@@ -212,6 +236,8 @@ TEST_F(RegisterCommand, UnusableFilesOfEditsGiveStatus2AndNameThePlace) {
       {"--keypoints", R"({"frame": "scan", "joints": {"head": {"position": [0, 0, 1e999]}}})", "1e999"},
       {"--align-file", "[[1, 0, 0, 0]]", "four rows"},
       {"--align-file", "[[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]", "determinant"},
+      {"--crop", R"({"crops": []})", "there is no crop"},
+      {"--project", R"({"vitruvian_project": 9})", "newer"},
       {"--init", "{}", "registration.json"},
       {"--init", failed.dump(), "parameters"},
   };

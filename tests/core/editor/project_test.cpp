@@ -130,7 +130,7 @@ TEST(Project, BrokenFilesNameThePlace) {
       {with("\"sha256\"", "\"sha\""), "scan"},
       {with("\"edit\": \"crop\"", "\"edit\": \"cut\""), "edits[0].edit"},
       {with("\"head\": ", "\"skull\": "), "skull"},
-      {with("\"joints\": {\"", "\"joints\": {}, \"other\": {\""), "edits["},
+      {with("\"edit\": \"joints\"", "\"edit\": \"regions\""), "edits[3]"},
       {with("\"views\": 2", "\"views\": -2"), "settings.views"},
       {good.substr(0, good.size() / 2), "JSON"},
   };

@@ -40,7 +40,7 @@ TEST(Crop, BrokenFilesNameThePlace) {
       {R"({"crops": [{"remove": "both", "box": {"min": [0,0,0], "max": [1,1,1]}}]})", "crops[0].remove"},
       {R"({"crops": [{"remove": "inside"}]})", "crops[0]"},
       {R"({"crops": [{"remove": "inside", "box": {"min": [0,0,0], "max": [1,0,1]}}]})", "crops[0].box"},
-      {R"({"crops": [{"remove": "inside", "box": {"min": [0,0,0], "max": [1,1e999,1]}}]})", "line 1"},
+      {R"({"crops": [{"remove": "inside", "box": {"min": [0,0,0], "max": [1,1e999,1]}}]})", "overflow"},
       {R"({"crops": [{"remove": "inside", "box_from_scan": [[0,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]})",
        "flattens"},
       {R"({"crops": [{"remove": "inside", "box_from_scan": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]}]})",
