@@ -149,7 +149,7 @@ TEST_F(RegisterCommand, WrongUsageGivesStatus2BeforeAnyWork) {
   EXPECT_FALSE(opened);
   EXPECT_FALSE(exists("out"));
   run({"register", scan, "--out", path("out"), "--crop", "c.json"});
-  EXPECT_TRUE(said("--crop: not yet available")) << error();
+  EXPECT_TRUE(said("c.json: cannot be read")) << error();
 }
 
 TEST_F(RegisterCommand, UnusableModelGivesStatus2) {
