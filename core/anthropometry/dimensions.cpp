@@ -44,6 +44,8 @@ struct Finding {
   std::vector<const SurfaceLandmark*> line;  ///< corners of a path of landmarks
   bool from_middle = false;                  ///< the line's first corner is the middle of its first and last
   SegmentSet touched = 0;                    ///< segments whose fit matters
+  CourseKind kind = CourseKind::tape;
+  std::vector<Vec3d> mark;  ///< of heights and extents, on the standing body
 };
 
 class Taker {
@@ -59,12 +61,15 @@ class Taker {
     side_ = side;
     wanted_ = spec.segment.empty() ? region() : 1u << segment_named(sided(spec.segment, side));
     switch (spec.kind) {
-      case DimensionKind::stature:
-        return Finding{figure_.vertices.row(1).maxCoeff() - floor_, {}, {}, false, ends()};
+      case DimensionKind::stature: {
+        Index top;
+        figure_.vertices.row(1).maxCoeff(&top);
+        return height(figure_.vertices.col(top), floor_, ends());
+      }
       case DimensionKind::height:
-        return Finding{level() - floor_, {}, {}, false, touched({spec.a, spec.b}) | ends()};
+        return height(middle(), floor_, touched({spec.a, spec.b}) | ends());
       case DimensionKind::vertical:
-        return Finding{place(spec.a).y() - place(spec.b).y(), {}, {}, false, touched({spec.a, spec.b})};
+        return height(place(spec.a), place(spec.b).y(), touched({spec.a, spec.b}));
       case DimensionKind::distance:
         return line({spec.a, spec.b}, false);
       case DimensionKind::path:
@@ -113,9 +118,23 @@ class Taker {
     return kAllSegments;
   }
 
+  static Finding height(const Vec3d& top, double low, SegmentSet touched) {
+    return {top.y() - low, {}, {}, false, touched, CourseKind::height, {top, Vec3d(top.x(), low, top.z())}};
+  }
+
+  /// The outermost corners of a tape along an axis (0: left-right, 2: front-back), on one line.
+  static std::vector<Vec3d> extent_of(const std::vector<Vec3d>& corners, Index axis) {
+    const auto less = [&](const Vec3d& a, const Vec3d& b) { return a[axis] < b[axis]; };
+    const auto [low, high] = std::minmax_element(corners.begin(), corners.end(), less);
+    Vec3d from = (*low + *high) / 2, to = from;
+    from[axis] = (*low)[axis];
+    to[axis] = (*high)[axis];
+    return {from, to};
+  }
+
   std::optional<Finding> line(std::initializer_list<std::string_view> names, bool from_middle) const {
     Finding finding;
-    std::vector<Vec3d> corners;
+    finding.kind = CourseKind::line;
     for (const std::string_view name : names) {
       finding.line.push_back(&landmark(name));
       finding.touched |= 1u << landmark(name).segment;
@@ -140,6 +159,9 @@ class Taker {
       }
     }
     finding.value = high - low;
+    finding.kind = CourseKind::extent;
+    const Vec3d heel = place(spec_->a);
+    finding.mark = {heel + (low - along.dot(heel)) * along, heel + (high - along.dot(heel)) * along};
     return finding;
   }
 
@@ -152,7 +174,12 @@ class Taker {
         spec_->kind == DimensionKind::level_breadth || spec_->kind == DimensionKind::widest_breadth;
     const bool depth = spec_->kind == DimensionKind::level_depth;
     finding.value = breadth ? tape->section.breadth : depth ? tape->section.depth : tape->length;
-    if (!breadth && !depth) finding.tape = std::move(tape);
+    if (breadth || depth) {
+      finding.kind = CourseKind::extent;
+      finding.mark = extent_of(tape->course(figure_), breadth ? 0 : 2);
+    } else {
+      finding.tape = std::move(tape);
+    }
     return finding;
   }
 
@@ -295,6 +322,7 @@ std::vector<Dimension> measure_dimensions(const Figure& standing, const Figure& 
       dimension.definition = spec.definition;
       dimension.side = side;
       dimension.uncertainty_m = uncertainty(*finding, errors);
+      dimension.course_kind = finding->kind;
       const bool on_landmarks = !finding->line.empty();
       for (const Posture posture : {Posture::standard, Posture::scanned}) {
         const Figure& figure = posture == Posture::standard ? standing : scanned;
@@ -311,6 +339,7 @@ std::vector<Dimension> measure_dimensions(const Figure& standing, const Figure& 
           continue;
         } else {
           dimension.value_m = finding->value;
+          dimension.course = finding->mark;
         }
         result.push_back(dimension);
       }

@@ -13,6 +13,14 @@ namespace vitruvian {
 
 enum class Posture { standard, scanned };
 
+/// What a dimension's course shows.
+enum class CourseKind {
+  tape,    ///< a tape laid on the skin, closed when it ends where it begins
+  line,    ///< straight lines between landmarks
+  height,  ///< the vertical between two levels
+  extent,  ///< between the outermost points of a section or a foot
+};
+
 /// A body dimension; ids are unique but for the posture.
 struct Dimension {
   std::string id, name, standard, definition;
@@ -20,8 +28,8 @@ struct Dimension {
   Posture posture = Posture::standard;
   double value_m = 0;
   std::optional<double> uncertainty_m;  ///< standard uncertainty; none where the fit's error is unknown
-  /// What was measured along: corners of the tape or line, body frame of the figure that it was taken on.
-  /// Empty for heights and extents.
+  CourseKind course_kind = CourseKind::line;
+  /// What was measured along, body frame of the figure that it was taken on.
   std::vector<Vec3d> course;
 };
 

@@ -4,14 +4,12 @@
 #include <filesystem>
 #include <optional>
 
-#include "anthropometry/posture.h"
 #include "base/sha256.h"
-#include "cli/measure_exports.h"
 #include "cli/paths.h"
 #include "geometry/mesh.h"
 #include "io/file.h"
 #include "io/npz.h"
-#include "pipeline/measurements_json.h"
+#include "measured/export_files.h"
 #include "pipeline/prepared_scan.h"
 #include "pipeline/result_json.h"
 
@@ -30,37 +28,6 @@ void check_model(const Registration& registration, const BodyModel& body, const 
                   " (" + body.sha256.substr(0, 12) + "...): give the model it was made with, --model FILE");
 }
 
-/// The rows of surface_segments by segment.
-std::array<const SegmentError*, kSegmentCount> error_rows(const Registration& registration) {
-  std::array<const SegmentError*, kSegmentCount> rows{};
-  if (!registration.surface_error) return rows;
-  for (const SegmentError& row : registration.surface_error->surface_segments) {
-    const int segment = segment_named(row.segment);
-    if (segment >= 0) rows[static_cast<std::size_t>(segment)] = &row;
-  }
-  return rows;
-}
-
-FitErrors fit_errors(const Registration& registration) {
-  const auto rows = error_rows(registration);
-  FitErrors errors;
-  for (std::size_t s = 0; s < rows.size(); ++s) {
-    if (rows[s] && rows[s]->statistics) errors[s] = 1e-3 * rows[s]->statistics->mean_mm;
-  }
-  return errors;
-}
-
-/// From the very vertices that the landmark lies between.
-double local_confidence(const SurfaceLandmark& landmark, const SurfaceMeasurement& surface) {
-  double observed = 0, error = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto v = static_cast<std::size_t>(landmark.vertex[k]);
-    observed += landmark.weight[static_cast<Index>(k)] * surface.observed[v];
-    error += landmark.weight[static_cast<Index>(k)] * surface.surface_distance_m[v];
-  }
-  return landmark_confidence(observed, error);
-}
-
 /// Distances between the registered body and its scan, vertex by vertex.
 SurfaceMeasurement compare_with_scan(const MeasureArguments& arguments, const Registration& registration,
                                      const Figure& figure, const Execution& execution) {
@@ -74,28 +41,6 @@ SurfaceMeasurement compare_with_scan(const MeasureArguments& arguments, const Re
   const BodyModel& body = figure.model->body();
   const Points3f vertices = figure.vertices.cast<float>(), normals = vertex_normals(vertices, body.faces);
   return measure_surface({vertices, normals, body.faces, body.segment}, placed.surface(), execution);
-}
-
-std::vector<LandmarkReport> landmark_reports(const Registration& registration, const Figure& figure,
-                                             const LandmarkSet& landmarks,
-                                             const SurfaceMeasurement* surface) {
-  const auto rows = error_rows(registration);
-  const Mat4d scan_from_body = registration.alignment.body_from_scan.inverse();
-  std::vector<LandmarkReport> reports;
-  for (const SurfaceLandmark& landmark : landmarks.all()) {
-    LandmarkReport report{std::string(landmark.name), landmark.position(figure.vertices), Vec3d::Zero(),
-                          std::nullopt};
-    report.scan =
-        scan_from_body.topLeftCorner<3, 3>() * report.body_m + scan_from_body.topRightCorner<3, 1>();
-    if (surface) {
-      report.confidence = local_confidence(landmark, *surface);
-    } else if (const SegmentError* row = rows[static_cast<std::size_t>(landmark.segment)]) {
-      report.confidence =
-          row->statistics ? landmark_confidence(row->observed, 1e-3 * row->statistics->mean_mm) : 0.0;
-    }
-    reports.push_back(std::move(report));
-  }
-  return reports;
 }
 
 /// The vertex offsets beside a registration that has some, 3 x V; else empty.
@@ -123,14 +68,15 @@ Points3d rest_offsets(const MeasureArguments& arguments, const Registration& reg
   return offsets;
 }
 
-std::vector<SectionResult> wanted_sections(const Figure& figure, const MeasureArguments& arguments) {
-  std::vector<SectionResult> sections;
-  for (const SectionRequest& request : arguments.sections) sections.push_back(section_at(figure, request));
-  for (const ProfileRequest& request : arguments.profiles) {
-    const std::vector<SectionResult> profile = section_profile(figure, request.segment, request.count);
-    sections.insert(sections.end(), profile.begin(), profile.end());
+void add_sections(MeasuredRegistration& measured, const MeasureArguments& arguments) {
+  for (const SectionRequest& request : arguments.sections) {
+    measured.add_section(section_at(measured.scanned(), request));
   }
-  return sections;
+  for (const ProfileRequest& request : arguments.profiles) {
+    for (SectionResult& section : section_profile(measured.scanned(), request.segment, request.count)) {
+      measured.add_section(std::move(section));
+    }
+  }
 }
 
 }  // namespace
@@ -140,12 +86,12 @@ ExitStatus run_measure(const MeasureArguments& arguments, const CliContext& cont
     throw Error(ErrorCode::usage, "--export needs --out DIR\nRun: vitruvian help measure");
   }
   Registration registration;
-  MeasurementReport report;
+  std::string sha256_text;
   try {
     const FileBytes file(arguments.registration_file);
     const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size());
     registration = parse_registration(text, arguments.registration_file);
-    report.registration_sha256 = to_hex(sha256(file.bytes()));
+    sha256_text = to_hex(sha256(file.bytes()));
   } catch (const Error& error) {
     context.error << "vitruvian: " << error.what() << "\n";
     return ExitStatus::unreadable;
@@ -158,45 +104,31 @@ ExitStatus run_measure(const MeasureArguments& arguments, const CliContext& cont
   const BodyModel body = context.open_body(arguments.model_file);
   check_model(registration, body, arguments);
 
-  const BodyParameters& parameters = *registration.parameters;
-  const MeasuredModel measured(body);
-  const BodyState state =
-      BodyState::from_axis_angle(parameters.pose, parameters.betas, parameters.translation_m);
-  Points3d offsets;
-  std::optional<Figure> figure;
-  std::optional<SurfaceMeasurement> surface;
+  std::optional<MeasuredRegistration> measured;
   try {
-    offsets = rest_offsets(arguments, registration, body);
-    figure.emplace(measured, state, offsets);
+    measured.emplace(registration, body, rest_offsets(arguments, registration, body), sha256_text);
     if (!arguments.scan_file.empty()) {
-      surface = compare_with_scan(arguments, registration, *figure, context.interrupt);
+      measured->compare(compare_with_scan(arguments, registration, measured->scanned(), context.interrupt));
     }
   } catch (const Error& error) {
     if (error.code() == ErrorCode::usage || error.code() == ErrorCode::cancelled) throw;
     context.error << "vitruvian: " << error.what() << "\n";
     return ExitStatus::unreadable;
   }
-  report.body = measure_body(*figure);
-  const LandmarkSet landmarks(measured);
-  const Figure standing(measured, standard_posture(measured, parameters.betas), offsets);
-  report.dimensions = measure_dimensions(standing, *figure, landmarks, fit_errors(registration));
-  report.landmarks = landmark_reports(registration, *figure, landmarks, surface ? &*surface : nullptr);
-  report.sections = wanted_sections(*figure, arguments);
+  add_sections(*measured, arguments);
   context.interrupt.check();
 
-  const std::string json = measurements_json(report, JsonStyle::pretty);
+  const std::string json = measurements_json(measured->report(), JsonStyle::pretty);
   if (arguments.out.empty()) {
     context.out << json;
     return ExitStatus::ok;
   }
   make_folders(arguments.out);
   const auto path = [&](const char* name) { return (std::filesystem::path(arguments.out) / name).string(); };
-  write_file(path("measurements.csv"), measurements_csv(report));
+  write_file(path("measurements.csv"), measurements_csv(measured->report()));
   write_file(path("measurements.json"), json);
-  const MeasuredRegistration everything{
-      registration, report, *figure, standing, state, offsets, surface ? &*surface : nullptr};
   for (const std::string& format : arguments.exports) {
-    for (const ExportedFile& file : export_files(format, everything))
+    for (const ExportedFile& file : export_files(format, *measured))
       write_file(path(file.name.c_str()), file.content);
     context.interrupt.check();
   }

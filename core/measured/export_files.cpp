@@ -1,4 +1,4 @@
-#include "cli/measure_exports.h"
+#include "measured/export_files.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -16,6 +16,8 @@ namespace {
 
 /// Red at this distance, millimetres.
 constexpr double kWorstColour = 20;
+constexpr std::array<std::string_view, 8> kFormats = {"html", "glb",       "npz", "smpl",
+                                                      "trc",  "landmarks", "ply", "obj"};
 
 std::string fixed(double value, int decimals) {
   char buffer[64];
@@ -44,25 +46,21 @@ std::array<std::uint8_t, 3> error_colour(double mm) {
 }
 
 ExportedBody exported_body(const MeasuredRegistration& m) {
-  ExportedBody body{m.scanned.model->body(),
-                    m.state,
-                    m.registration.model.gender,
-                    m.registration.alignment.body_from_scan,
-                    {},
-                    0,
-                    m.report.body.mass_kg};
-  body.stature_m = m.standing.vertices.row(1).maxCoeff() - m.standing.vertices.row(1).minCoeff();
-  body.rest_offsets = m.rest_offsets;
-  for (const LandmarkReport& landmark : m.report.landmarks)
+  ExportedBody body{
+      m.body(), m.state(), m.registration().model.gender, m.registration().alignment.body_from_scan,
+      {},       0,         m.report().body.mass_kg};
+  body.stature_m = m.standing().vertices.row(1).maxCoeff() - m.standing().vertices.row(1).minCoeff();
+  body.rest_offsets = m.rest_offsets();
+  for (const LandmarkReport& landmark : m.report().landmarks)
     body.landmarks.push_back({landmark.name, landmark.body_m});
   return body;
 }
 
 /// segments and, with a scan, errors; as PLY with the value beside the colour, or as OBJ.
 std::vector<ExportedFile> coloured_meshes(const MeasuredRegistration& m, bool ply) {
-  const BodyModel& body = m.scanned.model->body();
-  const Mat4d scan_from_body = m.registration.alignment.body_from_scan.inverse();
-  const Points3d vertices = (scan_from_body.topLeftCorner<3, 3>() * m.scanned.vertices).colwise() +
+  const BodyModel& body = m.body();
+  const Mat4d scan_from_body = m.registration().alignment.body_from_scan.inverse();
+  const Points3d vertices = (scan_from_body.topLeftCorner<3, 3>() * m.scanned().vertices).colwise() +
                             scan_from_body.topRightCorner<3, 1>();
   std::vector<ExportedFile> files;
   const auto add = [&](const std::string& name, const std::string& value_name, const auto& value,
@@ -80,39 +78,40 @@ std::vector<ExportedFile> coloured_meshes(const MeasuredRegistration& m, bool pl
   add(
       "segments", "segment", [&](std::size_t v) { return body.segment[v]; },
       [](float value) { return segment_colour(static_cast<int>(value)); });
-  if (m.surface) {
+  if (!m.vertex_error_mm().empty()) {
     add(
-        "errors", "error_mm", [&](std::size_t v) { return 1e3 * m.surface->surface_distance_m[v]; },
+        "errors", "error_mm", [&](std::size_t v) { return m.vertex_error_mm()[v]; },
         [](float value) { return error_colour(value); });
   }
   return files;
 }
 
 std::string html_report(const MeasuredRegistration& m) {
-  const BodyModel& body = m.standing.model->body();
-  ReportContent content{"Measurements of " + m.registration.scan.file,
-                        "Verdict: " + to_string(m.registration.verdict.status) + ", confidence " +
-                            fixed(m.registration.verdict.confidence, 2),
-                        m.registration.verdict.reasons,
+  const BodyModel& body = m.body();
+  ReportContent content{"Measurements of " + m.registration().scan.file,
+                        "Verdict: " + to_string(m.registration().verdict.status) + ", confidence " +
+                            fixed(m.registration().verdict.confidence, 2),
+                        m.registration().verdict.reasons,
                         {},
                         {},
-                        m.standing.vertices,
+                        m.standing().vertices,
                         body.faces,
                         {}};
-  content.facts.push_back("body volume " + fixed(1e3 * m.report.body.volume_m3, 2) + " l, surface " +
-                          fixed(m.report.body.area_m2, 3) + " m², mass with published segment densities " +
-                          fixed(m.report.body.mass_kg, 1) + " kg");
+  content.facts.push_back("body volume " + fixed(1e3 * m.report().body.volume_m3, 2) + " l, surface " +
+                          fixed(m.report().body.area_m2, 3) + " m², mass with published segment densities " +
+                          fixed(m.report().body.mass_kg, 1) + " kg");
   content.facts.push_back(
       "drawn and measured standing: upright, ankles 200 mm apart, arms 20 degrees from the vertical");
-  for (const Dimension& d : m.report.dimensions) {
+  for (const Dimension& d : m.report().dimensions) {
     if (d.posture != Posture::standard) continue;
     content.dimensions.push_back({d.name + (d.side.empty() ? "" : ", " + d.side), fixed(1e3 * d.value_m, 1),
                                   d.uncertainty_m ? fixed(1e3 * *d.uncertainty_m, 1) : "", d.standard,
                                   d.definition});
-    if (!d.course.empty()) content.curves.push_back({d.name, d.course});
+    if (d.course_kind == CourseKind::tape || d.course_kind == CourseKind::line)
+      content.curves.push_back({d.name, d.course});
   }
   for (int s = 0; s < kSegmentCount; ++s) {
-    const SegmentMeasure& segment = m.report.body.segments[static_cast<std::size_t>(s)];
+    const SegmentMeasure& segment = m.report().body.segments[static_cast<std::size_t>(s)];
     content.segments.push_back({std::string(kSegmentNames[static_cast<std::size_t>(s)]),
                                 fixed(1e6 * segment.volume_m3, 0) + " cm³", "", "",
                                 "length " + fixed(1e3 * segment.length_m, 0) + " mm, surface " +
@@ -124,7 +123,9 @@ std::string html_report(const MeasuredRegistration& m) {
 
 }  // namespace
 
-std::vector<ExportedFile> export_files(const std::string& format, const MeasuredRegistration& m) {
+std::span<const std::string_view> export_formats() { return kFormats; }
+
+std::vector<ExportedFile> export_files(std::string_view format, const MeasuredRegistration& m) {
   if (format == "ply" || format == "obj") return coloured_meshes(m, format == "ply");
   if (format == "html") return {{"report.html", html_report(m)}};
   const ExportedBody body = exported_body(m);
@@ -135,7 +136,7 @@ std::vector<ExportedFile> export_files(const std::string& format, const Measured
     return {{"markers.trc", to_trc(body, "markers.trc")}, {"markers_subject.json", to_subject_json(body)}};
   }
   if (format == "landmarks") return {{"landmarks.csv", to_landmark_csv(body)}};
-  throw Error(ErrorCode::usage, "--export: there is no format " + format);
+  throw Error(ErrorCode::usage, "--export: there is no format " + std::string(format));
 }
 
 }  // namespace vitruvian

@@ -1,4 +1,4 @@
-#include "pipeline/measurements_json.h"
+#include "measured/measurements_json.h"
 
 #include <cmath>
 #include <cstdio>

@@ -1,0 +1,123 @@
+#include "measured/measured_registration.h"
+
+#include <Eigen/LU>
+#include <utility>
+
+#include "anthropometry/posture.h"
+
+namespace vitruvian {
+namespace {
+
+const BodyParameters& parameters_of(const Registration& registration) {
+  if (!registration.parameters) {
+    throw Error(ErrorCode::usage, "the registration failed and has no body to measure");
+  }
+  return *registration.parameters;
+}
+
+BodyState state_of(const BodyParameters& p) {
+  return BodyState::from_axis_angle(p.pose, p.betas, p.translation_m);
+}
+
+/// The rows of surface_segments by segment.
+std::array<const SegmentError*, kSegmentCount> error_rows(const Registration& registration) {
+  std::array<const SegmentError*, kSegmentCount> rows{};
+  if (!registration.surface_error) return rows;
+  for (const SegmentError& row : registration.surface_error->surface_segments) {
+    const int segment = segment_named(row.segment);
+    if (segment >= 0) rows[static_cast<std::size_t>(segment)] = &row;
+  }
+  return rows;
+}
+
+FitErrors fit_errors(const Registration& registration) {
+  const auto rows = error_rows(registration);
+  FitErrors errors;
+  for (std::size_t s = 0; s < rows.size(); ++s) {
+    if (rows[s] && rows[s]->statistics) errors[s] = 1e-3 * rows[s]->statistics->mean_mm;
+  }
+  return errors;
+}
+
+/// From the very vertices that the landmark lies between.
+double local_confidence(const SurfaceLandmark& landmark, const SurfaceMeasurement& surface) {
+  double observed = 0, error = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto v = static_cast<std::size_t>(landmark.vertex[k]);
+    observed += landmark.weight[static_cast<Index>(k)] * surface.observed[v];
+    error += landmark.weight[static_cast<Index>(k)] * surface.surface_distance_m[v];
+  }
+  return landmark_confidence(observed, error);
+}
+
+}  // namespace
+
+MeasuredRegistration::MeasuredRegistration(const Registration& registration, const BodyModel& body,
+                                           Points3d rest_offsets, std::string sha256)
+    : registration_(registration),
+      model_(body),
+      landmarks_(model_),
+      state_(state_of(parameters_of(registration))),
+      rest_offsets_(std::move(rest_offsets)),
+      scanned_(model_, state_, rest_offsets_),
+      standing_(model_, standard_posture(model_, state_.betas), rest_offsets_),
+      scan_from_body_(registration.alignment.body_from_scan.inverse()) {
+  report_.registration_sha256 = std::move(sha256);
+  report_.body = measure_body(scanned_);
+  report_.dimensions = measure_dimensions(standing_, scanned_, landmarks_, fit_errors(registration));
+  const auto rows = error_rows(registration);
+  for (const SurfaceLandmark& landmark : landmarks_.all()) {
+    LandmarkReport row{std::string(landmark.name), landmark.position(scanned_.vertices), Vec3d::Zero(),
+                       std::nullopt};
+    row.scan = in_scan(row.body_m);
+    if (const SegmentError* error = rows[static_cast<std::size_t>(landmark.segment)]) {
+      row.confidence =
+          error->statistics ? landmark_confidence(error->observed, 1e-3 * error->statistics->mean_mm) : 0.0;
+    }
+    report_.landmarks.push_back(std::move(row));
+  }
+}
+
+void MeasuredRegistration::compare(const SurfaceMeasurement& surface) {
+  for (std::size_t i = 0; i < report_.landmarks.size(); ++i) {
+    report_.landmarks[i].confidence = local_confidence(landmarks_.all()[i], surface);
+  }
+  vertex_error_mm_.clear();
+  for (const float distance : surface.surface_distance_m) vertex_error_mm_.push_back(1e3f * distance);
+}
+
+Vec3d MeasuredRegistration::standing_shift() const {
+  const Vec3d there = scanned_.axes[0].proximal, here = standing_.axes[0].proximal;
+  return {there.x() - here.x(), scanned_.vertices.row(1).minCoeff() - standing_.vertices.row(1).minCoeff(),
+          there.z() - here.z()};
+}
+
+Points3d MeasuredRegistration::standing_in_place() const {
+  return standing_.vertices.colwise() + standing_shift();
+}
+
+Vec3d MeasuredRegistration::in_scan(const Vec3d& body_m) const {
+  return scan_from_body_.topLeftCorner<3, 3>() * body_m + scan_from_body_.topRightCorner<3, 1>();
+}
+
+std::vector<Vec3d> MeasuredRegistration::course_in_scan(const Dimension& dimension) const {
+  const Vec3d shift = dimension.posture == Posture::standard ? standing_shift() : Vec3d::Zero();
+  std::vector<Vec3d> course;
+  for (const Vec3d& corner : dimension.course) course.push_back(in_scan(corner + shift));
+  return course;
+}
+
+std::vector<ProfileSection> MeasuredRegistration::profile(int segment, int count) const {
+  std::vector<ProfileSection> profile;
+  for (SectionResult& result : section_profile(scanned_, segment, count)) {
+    ProfileSection section{std::move(result), {}};
+    if (const auto loop = segment_section(scanned_, segment, section.result.t)) {
+      for (const SectionPoint& point : loop->points) section.course.push_back(in_scan(point.position));
+      if (loop->closed && !section.course.empty()) section.course.push_back(section.course.front());
+    }
+    profile.push_back(std::move(section));
+  }
+  return profile;
+}
+
+}  // namespace vitruvian
