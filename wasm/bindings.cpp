@@ -180,4 +180,16 @@ EMSCRIPTEN_KEEPALIVE const char* vitruvian_files_report(const char* mesh_format)
   return guarded([&] { return kept(open_session().files_report(mesh_format)); }, kNoText);
 }
 
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_measurements_report() {
+  return guarded([&] { return kept(open_session().measurements_report()); }, kNoText);
+}
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_profile_report(const char* segment, int count) {
+  return guarded([&] { return kept(open_session().profile_report(segment, count)); }, kNoText);
+}
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_measured_files_report(const char* format) {
+  return guarded([&] { return kept(open_session().measured_files_report(format)); }, kNoText);
+}
+
 }  // extern "C"

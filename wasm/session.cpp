@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <utility>
 
+#include "base/sha256.h"
 #include "io/mesh_writer.h"
+#include "measured_report.h"
 #include "pipeline/report.h"
 #include "pipeline/result_json.h"
 #include "session_json.h"
@@ -49,6 +51,7 @@ Session::~Session() { task_.stop(); }
 void Session::load(ModelPart part, const Buffer& file, const std::string& name) {
   switch (part) {
     case ModelPart::body:
+      measured_.reset();
       models_.body = read_body_model(file.bytes(), name);
       return;
     case ModelPart::prior:
@@ -65,7 +68,7 @@ void Session::load(ModelPart part, const Buffer& file, const std::string& name) 
 void Session::open(Buffer file, std::string name) {
   task_.require_idle();
   pipeline_.reset();
-  registration_.reset();
+  drop_result();
   scan_.reset();
   shown_ = {};
   // std::function wants what it holds to be copyable.
@@ -100,7 +103,7 @@ int Session::configure(const std::string& settings) {
   chosen.threads = task_.execution().threads();
   if (pipeline_) pipeline_->configure(chosen);
   settings_ = chosen;
-  if (!holds(PipelineStage::fit)) registration_.reset();
+  if (!holds(PipelineStage::fit)) drop_result();
   int count = 0;
   while (count < kPipelineStageCount && holds(kStages[count])) ++count;
   return count;
@@ -119,7 +122,7 @@ void Session::begin(int until, bool again) {
   for (const PipelineStage stage : kStages) {
     if (holds(stage) && !(again && stage == until_)) continue;
     pipeline_->forget(stage);
-    registration_.reset();
+    drop_result();
     break;
   }
   request_.reset();
@@ -154,6 +157,11 @@ void Session::keep_result() {
   body_vertices_ = ((body_from_scan.topLeftCorner<3, 3>() * registration_->registered_vertices).colwise() +
                     body_from_scan.topRightCorner<3, 1>())
                        .cast<float>();
+}
+
+void Session::drop_result() {
+  measured_.reset();
+  registration_.reset();
 }
 
 std::string Session::request_report() const {
@@ -205,25 +213,57 @@ std::string Session::files_report(const std::string& mesh_format) {
   if (!registration_) throw Error(ErrorCode::internal, "nothing has been registered");
   const bool has_mesh =
       registration_->verdict.status != VerdictStatus::failed && registration_->registered_vertices.cols() > 0;
-  std::vector<std::string> names = {"registration.json"};
-  files_ = {registration_json(*registration_, VITRUVIAN_VERSION, JsonStyle::pretty)};
+  std::vector<ExportedFile> files = {
+      {"registration.json", registration_json(*registration_, VITRUVIAN_VERSION, JsonStyle::pretty)}};
   if (has_mesh) {
-    names.push_back("registered." + mesh_format);
-    files_.push_back(mesh_text(*registration_, mesh_format));
-    if (registration_->surface_error) {
-      names.emplace_back("errors.csv");
-      files_.push_back(errors_csv(*registration_->surface_error));
-    }
+    files.push_back({"registered." + mesh_format, mesh_text(*registration_, mesh_format)});
+    if (registration_->surface_error)
+      files.push_back({"errors.csv", errors_csv(*registration_->surface_error)});
     if (registration_->offsets.cols() > 0) {
-      names.emplace_back(kOffsetsFile);
-      files_.push_back(offsets_npz(registration_->offsets));
+      files.push_back({kOffsetsFile, offsets_npz(registration_->offsets)});
     }
   }
-  nlohmann::json files = nlohmann::json::array();
-  for (std::size_t i = 0; i < files_.size(); ++i) {
-    files.push_back({{"name", names[i]}, {"data", array_reference(files_[i].data(), files_[i].size())}});
+  return describe_files(std::move(files));
+}
+
+std::string Session::describe_files(std::vector<ExportedFile> files) {
+  files_ = std::move(files);
+  nlohmann::json list = nlohmann::json::array();
+  for (const ExportedFile& file : files_) {
+    list.push_back(
+        {{"name", file.name},
+         {"data", array_reference(file.content.data(), static_cast<std::ptrdiff_t>(file.content.size()))}});
   }
-  return text_of({{"files", files}});
+  return text_of({{"files", list}});
+}
+
+const MeasuredRegistration& Session::measured() {
+  task_.require_idle();
+  if (!registration_) throw Error(ErrorCode::internal, "nothing has been registered");
+  if (!measured_) {
+    const std::string text = registration_json(*registration_, VITRUVIAN_VERSION, JsonStyle::pretty);
+    measured_ = std::make_unique<MeasuredRegistration>(
+        *registration_, models_.body, registration_->offsets.cast<double>(),
+        to_hex(sha256(std::as_bytes(std::span(text.data(), text.size())))));
+    measured_->set_vertex_errors(registration_->vertex_error_mm);
+    standing_vertices_ = measured_->standing_in_place().cast<float>();
+  }
+  return *measured_;
+}
+
+std::string Session::measurements_report() {
+  nlohmann::json report = describe_measurements(measured());
+  report["standing"] = array_reference(standing_vertices_.data(), standing_vertices_.size());
+  report["faces"] = array_reference(models_.body.faces.data(), models_.body.faces.size());
+  return text_of(report);
+}
+
+std::string Session::profile_report(const std::string& segment, int count) {
+  return text_of(describe_profile(measured(), segment, count));
+}
+
+std::string Session::measured_files_report(const std::string& format) {
+  return describe_files(measured_files(measured(), format));
 }
 
 }  // namespace vitruvian::wasm

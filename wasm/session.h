@@ -11,6 +11,7 @@
 
 #include "geometry/mesh.h"
 #include "io/scan.h"
+#include "measured/export_files.h"
 #include "pipeline/models.h"
 #include "pipeline/pipeline.h"
 #include "task.h"
@@ -73,11 +74,21 @@ class Session {
   std::string findings_report();
   /// `{"files": [{"name", "data"}]}`: what the command line writes, with the mesh as "ply", "obj" or "glb".
   std::string files_report(const std::string& mesh_format);
+  /// measurements.json with where each dimension lies, and the standing body, `"standing":
+  /// array` of vertices (body frame) and `"faces": array`. See describe_measurements().
+  std::string measurements_report();
+  /// See describe_profile().
+  std::string profile_report(const std::string& segment, int count);
+  /// As files_report(); see measured_files().
+  std::string measured_files_report(const std::string& format);
 
  private:
   bool holds(PipelineStage stage) const;
   void advance();
   void keep_result();
+  void drop_result();
+  const MeasuredRegistration& measured();
+  std::string describe_files(std::vector<ExportedFile> files);
   nlohmann::json describe_pose();
   nlohmann::json describe_result() const;
 
@@ -93,9 +104,11 @@ class Session {
   std::optional<NetworkRequest> request_;
   NetworkReply reply_;
   std::optional<Registration> registration_;
+  std::unique_ptr<MeasuredRegistration> measured_;  ///< of registration_, when it was asked for
+  Points3f standing_vertices_;
   Points3f body_vertices_;   ///< registered, body frame
   Points3f posed_vertices_;  ///< before the fit, body frame
-  std::vector<std::string> files_;
+  std::vector<ExportedFile> files_;
 };
 
 }  // namespace vitruvian::wasm

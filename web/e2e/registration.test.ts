@@ -60,9 +60,9 @@ describe("registering the sample scan", () => {
     expect(await page.locator("table.errors tbody tr").count()).toBe(25);
 
     const zip = unzipSync(await downloaded(page, "All as ZIP"));
-    expect(Object.keys(zip).sort()).toEqual(
-      ["errors.csv", "registered.ply", "registration.json"].map((n) => `sample/${n}`),
-    );
+    for (const name of ["errors.csv", "registered.ply", "registration.json"]) {
+      expect(Object.keys(zip)).toContain(`sample/${name}`);
+    }
     const folder = nativeFolder();
     expectAgreement(
       registrationOf(zip["sample/registration.json"]!),

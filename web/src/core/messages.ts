@@ -1,4 +1,5 @@
 // Typed messages between the page and the worker that holds the core.
+import type { Measurements, Section } from "./measurements";
 import type { CoreStage, ErrorCode, Findings, OutputFile, ScanData, Settings } from "./types";
 
 export interface CoreInfo {
@@ -19,6 +20,12 @@ export interface Calls {
   cancel: { args: Record<string, never>; result: null };
   /** Files of the last result as the command line writes them. */
   files: { args: { format: "ply" | "obj" | "glb" }; result: OutputFile[] };
+  /** Measures the last result. */
+  measure: { args: Record<string, never>; result: Measurements };
+  /** `count` sections along a segment of the last result. */
+  profile: { args: { segment: string; count: number }; result: Section[] };
+  /** What `vitruvian measure --export format` writes; "measurements": the tables; "all": all of it. */
+  measuredFiles: { args: { format: string }; result: OutputFile[] };
   /** Bytes of memory that the core holds. */
   memory: { args: Record<string, never>; result: { heap: number } };
 }

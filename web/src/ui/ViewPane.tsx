@@ -4,6 +4,7 @@ import { millimetres } from "../result/format";
 import { startViewer } from "../viewer/start";
 import type { Direction, Viewer } from "../viewer/viewer";
 import { Legend } from "./Legend";
+import * as measuring from "./measuring";
 import * as state from "./state";
 import { isDark } from "./theme";
 
@@ -48,7 +49,7 @@ export function ViewPane() {
     viewer.value.look("front");
   });
   useSignalEffect(() => {
-    const body = state.shownBody.value;
+    const body = measuring.shownBody.value;
     viewer.value?.setBody(body?.mesh ?? null, body?.errorsMm ?? null);
   });
   useSignalEffect(() => {
@@ -62,7 +63,8 @@ export function ViewPane() {
   useSignalEffect(() =>
     viewer.value?.setAxes(state.stage.value === "align" && state.found.value.align !== null),
   );
-  useSignalEffect(() => viewer.value?.setOptions(state.shownView.value, state.legend.value));
+  useSignalEffect(() => viewer.value?.setOptions(measuring.shownView.value, state.legend.value));
+  useSignalEffect(() => viewer.value?.setCurve(measuring.drawn.value?.course ?? []));
   useSignalEffect(() => viewer.value?.setDark(isDark.value));
 
   const onKeyDown = (event: KeyboardEvent) => {
@@ -86,7 +88,7 @@ export function ViewPane() {
 
   const probe = useSignal("");
   const onPointerMove = (event: PointerEvent) => {
-    const errorsMm = state.shownBody.value?.errorsMm;
+    const errorsMm = measuring.shownBody.value?.errorsMm;
     if (event.buttons !== 0) return;
     const vertex = errorsMm ? (viewer.peek()?.pickBody(event.offsetX, event.offsetY) ?? -1) : -1;
     const error = errorsMm?.[vertex];
@@ -120,9 +122,10 @@ export function ViewPane() {
           </button>
         </div>
       )}
-      {state.shownBody.value?.errorsMm && state.shownView.value.showBody && state.view.value.heatMap && (
+      {measuring.shownBody.value?.errorsMm && state.shownView.value.showBody && state.view.value.heatMap && (
         <Legend />
       )}
+      {measuring.drawn.value && <p class="measured">{measuring.drawn.value.text}</p>}
       {probe.value && <p class="probe">{probe.value}</p>}
       <BusyNote />
     </section>

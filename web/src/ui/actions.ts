@@ -2,6 +2,7 @@
 import { batch } from "@preact/signals";
 import { CoreClient } from "../core/client";
 import { isolated, offlineReady } from "../core/isolation";
+import type { Measurements, Section } from "../core/measurements";
 import {
   CoreError,
   type CoreStage,
@@ -219,8 +220,23 @@ export async function download(name: string): Promise<void> {
 
 export async function downloadAll(): Promise<void> {
   const scan = state.result.value?.registration.scan.file ?? "scan";
-  const zip = await zipped(scan, await files());
+  const failed = state.result.value?.registration.verdict.status === "failed";
+  const zip = await zipped(scan, [...(await files()), ...(failed ? [] : await measuredFiles("all"))]);
   save(zip.name, zip.data);
+}
+
+/** Measures the result. @throws CoreError */
+export function measure(): Promise<Measurements> {
+  return client.call("measure", {});
+}
+
+export function profileOf(segment: string, count: number): Promise<Section[]> {
+  return client.call("profile", { segment, count });
+}
+
+/** What `vitruvian measure` writes; see Calls. */
+export function measuredFiles(format: string): Promise<OutputFile[]> {
+  return client.call("measuredFiles", { format });
 }
 
 /** Bytes of memory that the core has; null when it was not started. */

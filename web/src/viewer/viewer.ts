@@ -16,6 +16,7 @@ import type { Keypoint, Matrix, Mesh as MeshData, ScanData, Vec3 } from "../core
 import { columnMajor } from "../result/transform";
 import type { ViewOptions } from "../ui/state";
 import { bodyAxes, disposeAxes } from "./axes";
+import { curveOf, disposeCurve } from "./curve";
 import { Graphics } from "./graphics";
 import {
   bodyObject,
@@ -41,6 +42,7 @@ export class Viewer {
   private readonly keypointRoot = new Group();
   private readonly skeletonRoot = new Group();
   private readonly axesRoot = new Group();
+  private readonly curveRoot = new Group();
   private readonly grid = new GridHelper(4, 16);
   private readonly observer: ResizeObserver;
   private options: ViewOptions | null = null;
@@ -66,6 +68,7 @@ export class Viewer {
       this.keypointRoot,
       this.skeletonRoot,
       this.axesRoot,
+      this.curveRoot,
       this.grid,
     );
     this.grid.visible = false;
@@ -154,6 +157,13 @@ export class Viewer {
     this.request(true);
   }
 
+  /** Draws a tape or line. @param course corners, body frame; none removes it */
+  setCurve(course: readonly Vec3[]): void {
+    disposeCurve(this.curveRoot);
+    if (course.length > 1) this.curveRoot.add(curveOf(course));
+    this.request(true);
+  }
+
   setOptions(options: ViewOptions, legendMaximumMm: number): void {
     const repaint = options.heatMap !== this.options?.heatMap || legendMaximumMm !== this.legendMaximumMm;
     this.options = options;
@@ -212,6 +222,7 @@ export class Viewer {
     this.viewpoint.controls.dispose();
     for (const root of [this.scanRoot, this.bodyRoot, this.keypointRoot, this.skeletonRoot]) clear(root);
     disposeAxes(this.axesRoot);
+    disposeCurve(this.curveRoot);
     this.graphics.dispose();
   }
 

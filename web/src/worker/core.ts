@@ -1,4 +1,5 @@
 // Typed view of the WASM module: the only place that knows its entry points.
+import type { MeasurementsReport, Section } from "../core/measurements";
 import {
   type AlignData,
   CoreError,
@@ -48,6 +49,9 @@ interface Module {
   _vitruvian_resume(): number;
   _vitruvian_findings_report(): Text;
   _vitruvian_files_report(format: Text): Text;
+  _vitruvian_measurements_report(): Text;
+  _vitruvian_profile_report(segment: Text, count: number): Text;
+  _vitruvian_measured_files_report(format: Text): Text;
 }
 
 /** Files of ModelPart in wasm/session.h, in its order. */
@@ -179,12 +183,26 @@ export class Core {
 
   /** What the command line writes. */
   files(meshFormat: string): OutputFile[] {
-    const report = this.withText(meshFormat, (text) =>
-      this.json<{ files: { name: string; data: ArrayReference }[] }>(
-        this.module._vitruvian_files_report(text),
-      ),
-    );
-    return report.files.map(({ name, data: [address, size] }) => ({ name, data: this.bytes(address, size) }));
+    return this.withText(meshFormat, (text) => this.listed(this.module._vitruvian_files_report(text)));
+  }
+
+  measure(): MeasurementsReport & { standing: ArrayReference; faces: ArrayReference } {
+    return this.json(this.module._vitruvian_measurements_report());
+  }
+
+  profile(segment: string, count: number): Section[] {
+    return this.withText(segment, (text) => this.json(this.module._vitruvian_profile_report(text, count)));
+  }
+
+  /** What `vitruvian measure` writes. */
+  measuredFiles(format: string): OutputFile[] {
+    return this.withText(format, (text) => this.listed(this.module._vitruvian_measured_files_report(text)));
+  }
+
+  /** Copies of the files of a report. */
+  private listed(report: Text): OutputFile[] {
+    const { files } = this.json<{ files: { name: string; data: ArrayReference }[] }>(report);
+    return files.map(({ name, data: [address, size] }) => ({ name, data: this.bytes(address, size) }));
   }
 
   private async answer({ network, inputs }: NetworkRequest, runNetwork: RunNetwork): Promise<void> {

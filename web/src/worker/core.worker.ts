@@ -110,6 +110,20 @@ const handlers: Handlers = {
     return theCore().files(format);
   },
 
+  async measure() {
+    const core = theCore();
+    const { standing, faces, ...report } = core.measure();
+    return { ...report, standing: { positions: core.floats(standing), indices: core.integers(faces) } };
+  },
+
+  async profile({ segment, count }) {
+    return theCore().profile(segment, count);
+  },
+
+  async measuredFiles({ format }) {
+    return theCore().measuredFiles(format);
+  },
+
   async memory() {
     return { heap: theCore().heap() };
   },

@@ -4,9 +4,11 @@ import { displayName, millimetres, percent } from "../../result/format";
 import { download, downloadAll } from "../actions";
 import { Choice } from "../Choice";
 import { ErrorHistogram } from "../ErrorHistogram";
+import { half } from "../measuring";
 import { RegisterAll } from "../RunStage";
 import { type Measure, result, scan, stale } from "../state";
 import { ViewControls } from "../ViewControls";
+import { MeasurementsPanel } from "./MeasurementsPanel";
 
 const VERDICTS = {
   ok: "The registration can be trusted.",
@@ -27,7 +29,7 @@ export function ResultsPanel() {
       </>
     );
   }
-  const { verdict, surface_error, joints } = data.registration;
+  const { verdict } = data.registration;
   return (
     <>
       <div class={`verdict ${verdict.status}`}>
@@ -42,6 +44,31 @@ export function ResultsPanel() {
           </ul>
         )}
       </div>
+      {verdict.status !== "failed" && (
+        <Choice
+          label="Show"
+          value={half.value}
+          options={HALVES}
+          onChange={(value) => {
+            half.value = value;
+          }}
+        />
+      )}
+      {verdict.status !== "failed" && half.value === "measurements" ? <MeasurementsPanel /> : <Distances />}
+    </>
+  );
+}
+
+const HALVES: [typeof half.value, string][] = [
+  ["distances", "Distances"],
+  ["measurements", "Measurements"],
+];
+
+function Distances() {
+  const data = result.value!;
+  const { verdict, surface_error, joints } = data.registration;
+  return (
+    <>
       <ViewControls />
       {surface_error && <Errors error={surface_error} />}
       {surface_error?.parametric && (
