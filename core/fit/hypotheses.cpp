@@ -3,47 +3,79 @@
 #include <algorithm>
 #include <array>
 
+#include "fit/extremity_flip.h"
 #include "fit/limb_search.h"
 
 namespace vitruvian {
 namespace {
 
-bool is_bad(const FitScore& score, const HypothesisSettings& settings) {
+bool is_bare(const FitScore& score, const HypothesisSettings& settings) {
+  return score.scan_to_model_p95 < settings.bare_scan_to_model_p95;
+}
+
+bool has_opposed_parts(const FitScore& score, const HypothesisSettings& settings) {
+  return score.opposed_normals >
+         (is_bare(score, settings) ? settings.bad_opposed_bare : settings.bad_opposed_clothed);
+}
+
+bool lacks_a_small_part(const FitScore& score, const HypothesisSettings& settings) {
+  return is_bare(score, settings) && (score.scan_to_model_p99 > settings.bad_bare_scan_to_model_p99 ||
+                                      score.model_to_scan_p99 > settings.bad_bare_model_to_scan_p99);
+}
+
+bool is_unexplained_at_large(const FitScore& score, const HypothesisSettings& settings) {
   return score.scan_to_model_p95 > settings.bad_scan_to_model_p95 ||
          score.model_to_scan_p95 > settings.bad_model_to_scan_p95;
 }
 
-bool is_hopeless(const FitScore& score, const HypothesisSettings& settings) {
-  return score.scan_to_model_p95 > settings.hopeless_scan_to_model_p95 ||
-         score.model_to_scan_p95 > settings.bad_model_to_scan_p95;
+/// Whether a limb search may help: it looks for what lies away from the scan, not for what lies in its place.
+bool is_unexplained(const FitScore& score, const HypothesisSettings& settings) {
+  return is_unexplained_at_large(score, settings) || lacks_a_small_part(score, settings);
 }
 
-constexpr std::array kShoulders = {11}, kHips = {23};
-constexpr std::array kArms = {13, 15, 17, 19}, kLegs = {25, 27, 29, 31};
+bool is_hopeless(const FitScore& score, const HypothesisSettings& settings) {
+  return score.scan_to_model_p95 > settings.hopeless_scan_to_model_p95 ||
+         score.model_to_scan_p95 > settings.bad_model_to_scan_p95 || lacks_a_small_part(score, settings) ||
+         has_opposed_parts(score, settings);
+}
+
+constexpr std::array kShoulders = {11}, kElbows = {13}, kHips = {23}, kKnees = {25};
+constexpr std::array kHands = {15, 17, 19}, kFeet = {27, 29, 31};
+
+/// Where the landmarks of a start come from.
+enum class Source { swap_aware, plain, fitted };
 
 /// Left landmarks (odd numbers) that a start exchanges with their right partners.
 struct Start {
   const char* name;
-  bool plain;
-  bool arms, shoulders, legs, hips, head;
+  Source source;
+  bool hands, elbows, shoulders, feet, knees, hips, head;
+
+  bool moves_arms() const { return hands || elbows || shoulders; }
+  bool moves_legs() const { return feet || knees || hips; }
 };
 
 // The first start is the triangulation as it is; the order of the others is by how often each was the cure.
 constexpr Start kStarts[] = {
-    {"landmarks", false, false, false, false, false, false},
-    {"plain triangulation", true, false, false, false, false, false},
-    {"legs exchanged", false, false, false, true, false, false},
-    {"arms exchanged", false, true, false, false, false, false},
-    {"left and right exchanged", false, true, true, true, true, true},
-    {"legs and hips exchanged", false, false, false, true, true, false},
-    {"arms and shoulders exchanged", false, true, true, false, false, false},
-    {"arms and legs exchanged", false, true, false, true, false, false},
+    {"landmarks", Source::swap_aware, false, false, false, false, false, false, false},
+    {"plain triangulation", Source::plain, false, false, false, false, false, false, false},
+    {"legs exchanged", Source::swap_aware, false, false, false, true, true, false, false},
+    {"arms exchanged", Source::swap_aware, true, true, false, false, false, false, false},
+    {"forearms exchanged", Source::swap_aware, true, false, false, false, false, false, false},
+    {"fitted forearms exchanged", Source::fitted, true, false, false, false, false, false, false},
+    {"fitted shanks exchanged", Source::fitted, false, false, false, true, false, false, false},
+    {"left and right exchanged", Source::swap_aware, true, true, true, true, true, true, true},
+    {"legs and hips exchanged", Source::swap_aware, false, false, false, true, true, true, false},
+    {"arms and shoulders exchanged", Source::swap_aware, true, true, true, false, false, false, false},
+    {"shanks exchanged", Source::swap_aware, false, false, false, true, false, false, false},
+    {"arms and legs exchanged", Source::swap_aware, true, true, false, true, true, false, false},
 };
 
 bool exchanges(const Start& start, int landmark) {
   const int left = std::min(landmark, mirrored_landmark(landmark));
   const auto in = [&](const auto& list) { return std::find(list.begin(), list.end(), left) != list.end(); };
-  return (start.arms && in(kArms)) || (start.shoulders && in(kShoulders)) || (start.legs && in(kLegs)) ||
+  return (start.hands && in(kHands)) || (start.elbows && in(kElbows)) ||
+         (start.shoulders && in(kShoulders)) || (start.feet && in(kFeet)) || (start.knees && in(kKnees)) ||
          (start.hips && in(kHips)) || (start.head && left < 11);
 }
 
@@ -59,12 +91,24 @@ std::vector<LandmarkTarget> exchanged(const std::vector<LandmarkTarget>& landmar
   return result;
 }
 
+/// The landmarks where a fitted body has them.
+std::vector<LandmarkTarget> fitted(const FitModel& model, const BodyState& state,
+                                   std::vector<LandmarkTarget> landmarks) {
+  const Skeleton skeleton = pose_skeleton(model.body, state);
+  for (LandmarkTarget& l : landmarks) {
+    l.target = landmark_position(skeleton, l);
+    l.weight = std::max(l.weight, 0.5);
+  }
+  return landmarks;
+}
+
 struct Fit {
   BodyState state;
   FitScore score;
 };
 
 constexpr int kCoarseScoreSamples = 2000;
+constexpr double kAllWrong = 2;  // times the best start's FitScore::total()
 
 /// Whether two states pose the joints alike.
 bool same_pose(const FitModel& model, const BodyState& a, const BodyState& b, double tolerance) {
@@ -94,7 +138,8 @@ std::vector<Fit> refit(const FitModel& model, const ScanTarget& scan,
 int repair(const FitModel& model, const ScanTarget& scan, const HypothesisSettings& settings, Fit& fit,
            int& budget, const Execution& execution) {
   int repairs = 0;
-  for (int round = 0; round < settings.repair_rounds && is_bad(fit.score, settings) && budget > 0; ++round) {
+  for (int round = 0; round < settings.repair_rounds && is_unexplained(fit.score, settings) && budget > 0;
+       ++round) {
     std::array<std::vector<BodyState>, 4> found;
     execution.parallel_for(4, 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       for (std::ptrdiff_t limb = begin; limb < end; ++limb) {
@@ -120,6 +165,45 @@ int repair(const FitModel& model, const ScanTarget& scan, const HypothesisSettin
   return repairs;
 }
 
+/// Finds out whether a fit is still bad, and which hands and feet speak against it.
+void judge(const FitModel& model, const ScanTarget& scan, const HypothesisSettings& settings,
+           HypothesisResult& result) {
+  PosedModel posed;
+  posed.update(model, result.state);
+  for (int limb = 0; limb < 4; ++limb)
+    result.misfit_limbs[limb] = extremity_misfit(model, scan, posed, limb) > settings.bad_extremity;
+  result.bad = is_hopeless(result.score, settings);
+  result.limb_away = is_unexplained_at_large(result.score, settings);
+}
+
+/// Starts that only move what lies well already are left out, unless whole limbs are away from the scan.
+bool worth_trying(const Start& start, const HypothesisResult& best) {
+  const auto& misfit = best.misfit_limbs;
+  const bool arms = misfit[0] || misfit[1], legs = misfit[2] || misfit[3];
+  if (best.limb_away || arms == legs || start.source == Source::plain) return true;
+  return arms ? start.moves_arms() : start.moves_legs();
+}
+
+/// Hands and feet tried back to front where they fit badly. Returns the number turned.
+int turn_extremities(const FitModel& model, const ScanTarget& scan, const HypothesisSettings& settings,
+                     Fit& fit, int& budget, const Execution& execution) {
+  int turned = 0;
+  while (budget > 0 && turned < 4) {
+    std::vector<BodyState> candidates = turned_extremities(model, scan, fit.state, settings.bad_extremity);
+    if (static_cast<int>(candidates.size()) > budget) candidates.resize(budget);
+    if (candidates.empty()) break;
+    budget -= static_cast<int>(candidates.size());
+    fit.score = score_fit(model, scan, fit.state, kCoarseScoreSamples);
+    const double before = fit.score.total();
+    for (Fit& other : refit(model, scan, candidates, FitSchedule::after_limb_search(), execution)) {
+      if (other.score.total() < fit.score.total() - settings.least_gain) fit = std::move(other);
+    }
+    if (fit.score.total() == before) break;
+    ++turned;
+  }
+  return turned;
+}
+
 }  // namespace
 
 int mirrored_landmark(int landmark) {
@@ -137,9 +221,11 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
   int budget = settings.refit_budget;
   for (const Start& start : kStarts) {
     const bool first = tried.empty();
-    if (start.plain && plain.empty()) continue;
-    if (!first && budget <= 0) break;
-    const std::vector<LandmarkTarget> targets = start.plain ? plain : exchanged(landmarks, start);
+    if (start.source == Source::plain && plain.empty()) continue;
+    if (!first && (budget <= 0 || !worth_trying(start, best))) continue;
+    std::vector<LandmarkTarget> targets = start.source == Source::plain ? plain : landmarks;
+    if (start.source == Source::fitted) targets = fitted(model, best.state, std::move(targets));
+    targets = exchanged(targets, start);
     Fit fit;
     fit.state = first && settings.landmark_fit ? *settings.landmark_fit : fit_landmarks(model, targets);
     fit_surface(model, scan, FitSchedule::coarse(), targets, fit.state, execution);
@@ -151,8 +237,11 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
     }
     tried.push_back(fit.state);
     fit.score = score_fit(model, scan, fit.state, kCoarseScoreSamples);
+    // Next to a body that is right but for a hand, one that lies all wrong is not worth mending.
+    if (!first && !best.limb_away && fit.score.total() > kAllWrong * best.score.total()) continue;
     const int repairs = repair(model, scan, settings, fit, budget, execution);
     if (repairs > 0) tried.push_back(fit.state);
+    const int turned = turn_extremities(model, scan, settings, fit, budget, execution);
     fit_surface(model, scan, FitSchedule::polish(), {}, fit.state, execution);
     fit.score = score_fit(model, scan, fit.state);
     const double gap = fit.score.total() - best.score.total();
@@ -162,7 +251,8 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
       best.score = fit.score;
       best.start = start.name;
       best.repairs = repairs;
-      best.bad = is_hopeless(fit.score, settings);
+      best.turned = turned;
+      judge(model, scan, settings, best);
     } else {
       best.runner_up_gap = best.runner_up_gap > 0 ? std::min(best.runner_up_gap, gap) : gap;
     }

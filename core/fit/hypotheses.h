@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,12 +16,21 @@ struct HypothesisSettings {
   /// A fit beyond either is searched for misplaced limbs; m.
   double bad_scan_to_model_p95 = 0.045;
   double bad_model_to_scan_p95 = 0.025;
+  /// Share of opposed normals beyond which two limbs may lie in each other's place. Right fits of bare bodies
+  /// reach 3.0 %, of clothed ones 12 %; a scan counts as bare when it is explained to
+  /// `bare_scan_to_model_p95`, m.
+  double bad_opposed_bare = 0.030, bad_opposed_clothed = 0.12;
+  double bare_scan_to_model_p95 = 0.026;
+  /// A bare scan is explained to the last hand: beyond either its fit is bad, m.
+  double bad_bare_scan_to_model_p99 = 0.035;
+  double bad_bare_model_to_scan_p99 = 0.020;
   /// A fit that is still beyond this, or beyond bad_model_to_scan_p95, is started anew; m. Between the two
   /// lie clothes and hair: scan points without a counterpart on a body that is otherwise explained.
   double hopeless_scan_to_model_p95 = 0.09;
+  double bad_extremity = 0.018;  ///< m, extremity_misfit() beyond which a hand or foot is tried back to front
   int repair_rounds = 3;
   int candidates_per_limb = 2;
-  double least_gain = 0.0005;             ///< m of FitScore::total()
+  double least_gain = 0.001;              ///< m of FitScore::total()
   int refit_budget = 48;                  ///< coarse surface fits beyond the first
   double same_pose = 0.06;                ///< m, largest joint distance at which two starts count as one
   std::optional<BodyState> landmark_fit;  ///< of the first start, when it was done before
@@ -29,9 +39,13 @@ struct HypothesisSettings {
 struct HypothesisResult {
   BodyState state;
   FitScore score;
-  bool bad = false;   ///< still over a threshold
+  bool bad = false;  ///< still over a threshold
+  /// Whether whole limbs are away from the scan: one of the thresholds at the 95th percentile.
+  bool limb_away = false;
+  std::array<bool, 4> misfit_limbs{};  ///< hands and feet, as kLimbs, that do not look like the scan there
   std::string start;  ///< name of the start that led here, e.g. "landmarks", "legs exchanged"
   int repairs = 0;    ///< limbs found again
+  int turned = 0;     ///< hands and feet turned round
   int refits = 0;     ///< surface fits beyond the first
   double runner_up_gap =
       0;  ///< m, total() of the next best distinct start minus ours; 0 when only one was tried
@@ -39,7 +53,7 @@ struct HypothesisResult {
 
 /// Fits from the landmarks; when the two-way residual is bad, searches limbs anew where scan points stay
 /// unexplained, then tries other starts: the plain triangulation, and landmarks with left and right exchanged
-/// on legs, arms or both.
+/// on legs, arms, forearms, shanks or all. Hands and feet that fit badly are tried back to front.
 /// @param landmarks  swap-aware triangulation; `plain` the other one (may be empty).
 HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
                                 const std::vector<LandmarkTarget>& landmarks,

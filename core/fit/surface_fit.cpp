@@ -88,15 +88,10 @@ std::vector<KdTree> model_trees(const FitModel& model, const PosedModel& posed, 
   return trees;
 }
 
-double mean_of(const std::vector<float>& values) {
-  double sum = 0;
-  for (const float value : values) sum += value;
-  return values.empty() ? 0 : sum / static_cast<double>(values.size());
-}
-
-double percentile_95(std::vector<float>& values) {
+double percentile(std::vector<float>& values, double share) {
   if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -163,31 +158,42 @@ FitScore score_fit(const FitModel& model, const ScanTarget& scan, const BodyStat
   posed.update(model, state);
   FitScore score;
   int opposed = 0;
+  double with_normals = 0;
   std::vector<float> of_model, of_scan;
   const int model_count = std::min<int>(samples, static_cast<int>(model.order.size()));
   for (int i = 0; i < model_count; ++i) {
     const int v = model.order[i];
-    const Neighbour y = scan.nearest(v, posed.vertices.col(v), Vec3f::Zero(), false);
+    const Vec3f x = posed.vertices.col(v), n = posed.normals.col(v);
+    const Neighbour y = scan.nearest(v, x, n, false);
     if (y.index < 0) continue;
     of_model.push_back(std::sqrt(y.squared_distance));
-    opposed += scan.normals.col(y.index).dot(posed.normals.col(v)) < 0;
+    opposed += scan.normals.col(y.index).dot(n) < 0;
+    with_normals += std::sqrt(scan.nearest(v, x, n, true).squared_distance);
   }
+  score.model_to_scan = with_normals / static_cast<double>(std::max<std::size_t>(1, of_model.size()));
+  with_normals = 0;
   FitStage whole{};
   whole.samples = model.body.vertex_count();
   const std::vector<KdTree> trees = model_trees(model, posed, scan.regions, whole);
+  whole.normals_in_search = true;
+  const std::vector<KdTree> trees_with_normals = model_trees(model, posed, scan.regions, whole);
   const int scan_count = std::min<int>(samples, static_cast<int>(scan.points.cols()));
   for (int i = 0; i < scan_count; ++i) {
-    const KdTree& tree = trees[static_cast<std::size_t>(scan.regions.of_point(i))];
-    if (tree.empty()) continue;
-    const Neighbour v = tree.nearest(scan.points.col(i));
+    const std::size_t label = static_cast<std::size_t>(scan.regions.of_point(i));
+    if (trees[label].empty()) continue;
+    const Vec3f y = scan.points.col(i), n = scan.normals.col(i);
+    const Neighbour v = trees[label].nearest(y);
     of_scan.push_back(std::sqrt(v.squared_distance));
-    opposed += scan.normals.col(i).dot(posed.normals.col(v.index)) < 0;
+    opposed += n.dot(posed.normals.col(v.index)) < 0;
+    with_normals += std::sqrt(trees_with_normals[label].nearest(y, n).squared_distance);
   }
-  score.model_to_scan = mean_of(of_model);
-  score.scan_to_model = mean_of(of_scan);
-  score.model_to_scan_p95 = percentile_95(of_model);
-  score.scan_to_model_p95 = percentile_95(of_scan);
-  score.opposed_normals = static_cast<double>(opposed) / std::max(1, model_count + scan_count);
+  const std::size_t pairs = of_model.size() + of_scan.size();
+  score.scan_to_model = with_normals / static_cast<double>(std::max<std::size_t>(1, of_scan.size()));
+  score.model_to_scan_p95 = percentile(of_model, 0.95);
+  score.scan_to_model_p95 = percentile(of_scan, 0.95);
+  score.model_to_scan_p99 = percentile(of_model, 0.99);
+  score.scan_to_model_p99 = percentile(of_scan, 0.99);
+  score.opposed_normals = static_cast<double>(opposed) / static_cast<double>(std::max<std::size_t>(1, pairs));
   return score;
 }
 

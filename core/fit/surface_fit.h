@@ -37,11 +37,15 @@ struct FitSchedule {
 
 /// How well a body explains a scan and the scan a body; distances between samples, m.
 struct FitScore {
-  double model_to_scan = 0;  ///< mean
-  double scan_to_model = 0;  ///< mean
-  double model_to_scan_p95 = 0;
+  /// Means of the distances in position and normal (ScanTarget::kNormalWeight): two limbs that lie in each
+  /// other's place are near to the scan's points, but not to points that face their way.
+  double model_to_scan = 0;
+  double scan_to_model = 0;
+  double model_to_scan_p95 = 0;  ///< of the distances in position alone
   double scan_to_model_p95 = 0;
-  double opposed_normals = 0;  ///< share of the pairs whose normals point away from each other
+  double model_to_scan_p99 = 0;  ///< a hand holds a hundredth of the surface
+  double scan_to_model_p99 = 0;
+  double opposed_normals = 0;  ///< share of the nearest pairs whose normals point away from each other
   double total() const { return model_to_scan + scan_to_model; }
 };
 
