@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "base/random.h"
 #include "geometry/kdtree.h"
@@ -118,6 +120,32 @@ bool is_floor(const std::vector<Vec3d>& cells, Plane& plane, double thickness, d
   return true;
 }
 
+/// Whether the plane reaches beyond what stands or lies on it: most of its cells have nothing above them. The
+/// flat back of a body that lay on a table is no floor.
+bool reaches_beyond(const std::vector<Vec3d>& cells, const Plane& plane, double thickness, double cell) {
+  constexpr double kLeastUncovered = 0.4, kTile = 2;  // share of the plane's cells; side of a tile in cells
+  const Vec3d right = plane.normal.unitOrthogonal(), forward = plane.normal.cross(right);
+  const auto tile = [&](const Vec3d& point) {
+    return std::pair(static_cast<int>(std::floor(right.dot(point) / (kTile * cell))),
+                     static_cast<int>(std::floor(forward.dot(point) / (kTile * cell))));
+  };
+  std::set<std::pair<int, int>> covered;
+  for (const Vec3d& point : cells) {
+    if (plane.height(point) <= thickness) continue;
+    const auto [u, v] = tile(point);
+    for (int du = -1; du <= 1; ++du) {
+      for (int dv = -1; dv <= 1; ++dv) covered.emplace(u + du, v + dv);
+    }
+  }
+  std::size_t on = 0, uncovered = 0;
+  for (const Vec3d& point : cells) {
+    if (std::fabs(plane.height(point)) > thickness) continue;
+    ++on;
+    uncovered += !covered.contains(tile(point));
+  }
+  return static_cast<double>(uncovered) >= kLeastUncovered * static_cast<double>(on);
+}
+
 /// Largest floor-like plane among random triples of cells; its normal is zero when there is none.
 Plane find_floor(const std::vector<Vec3d>& cells, double cell) {
   constexpr int kTrials = 300;
@@ -140,7 +168,8 @@ Plane find_floor(const std::vector<Vec3d>& cells, double cell) {
   }
   if (best_count == 0 || !is_floor(cells, best, thickness, diagonal)) return {};
   Plane again = best;
-  return is_floor(cells, again, thickness, diagonal) ? again : best;
+  const Plane floor = is_floor(cells, again, thickness, diagonal) ? again : best;
+  return reaches_beyond(cells, floor, thickness, cell) ? floor : Plane{};
 }
 
 /// Number of each kept cell's connected group, and the groups' sizes in cells; -1 for cells left out. Cells
@@ -214,10 +243,12 @@ BodyPoints find_body_points(const Points3f& vertices, const Faces& faces) {
   body.keep.assign(static_cast<std::size_t>(vertices.cols()), 0);
 
   const Plane floor = find_floor(grid.mean, grid.cell);
-  const bool has_floor = floor.normal.squaredNorm() > 0;
+  body.floor_normal = floor.normal;
+  body.floor_offset = floor.offset;
+  body.floor_noise = 0.5 * grid.cell;
   const double clearance = 1.2 * grid.cell;
   std::vector<std::uint8_t> cell_kept(grid.mean.size(), 1);
-  if (has_floor) {
+  if (body.has_floor()) {
     for (std::size_t c = 0; c < cell_kept.size(); ++c) cell_kept[c] = floor.height(grid.mean[c]) > clearance;
   }
   std::vector<int> sizes;

@@ -13,6 +13,16 @@ struct BodyPoints {
   std::vector<std::uint8_t> keep;  ///< V, 1 for the body's points
   long strays = 0;  ///< points removed because they lie apart in small groups, or are not finite
   long floor = 0;   ///< points removed because they lie on a floor or wall
+  /// The floor's plane: its points p have floor_normal . p = floor_offset; the normal, toward the body, is
+  /// zero when there is no floor. Points nearer to it than `floor_noise` belong to it.
+  Vec3d floor_normal = Vec3d::Zero();
+  double floor_offset = 0, floor_noise = 0;
+
+  bool has_floor() const { return floor_normal.squaredNorm() > 0; }
+  /// Whether a point lies on the floor or behind it.
+  bool on_floor(const Vec3d& point) const {
+    return has_floor() && floor_normal.dot(point) - floor_offset < floor_noise;
+  }
 };
 
 /// Leaves out stray points and a floor: a plane that holds a tenth or more of the surface, spreads wider than

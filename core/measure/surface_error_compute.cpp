@@ -169,7 +169,12 @@ SurfaceMeasurement measure_surface(const PosedTemplate& model, const ScanSurface
   });
 
   const ClosestPointOnMesh model_surface(model.vertices, model.faces);
-  result.sampled_point = spread_indices(scan.points.cols(), kScanSamples);
+  const bool whole = scan.body.empty();
+  result.sampled_point =
+      spread_indices(whole ? scan.points.cols() : static_cast<Index>(scan.body.size()), kScanSamples);
+  if (!whole) {
+    for (int& point : result.sampled_point) point = scan.body[point];
+  }
   const auto samples = static_cast<std::ptrdiff_t>(result.sampled_point.size());
   result.sampled_distance_m.resize(result.sampled_point.size());
   execution.parallel_for(samples, 256, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {

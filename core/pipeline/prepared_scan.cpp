@@ -48,7 +48,9 @@ PreparedScan::PreparedScan(std::shared_ptr<const Scan> given, const Execution& e
   // surface.
   if (scan.faces.cols() > 0 && coarse.faces.cols() < coarse.vertices.cols() / 2) coarse.faces.resize(3, 0);
   // Strays and a floor would shrink the body in the pictures and cover its feet.
-  coarse = only_body(coarse, find_body_points(coarse.vertices, coarse.faces));
+  const BodyPoints found = find_body_points(coarse.vertices, coarse.faces);
+  coarse = only_body(coarse, found);
+  leave_out_floor(found);
   const std::vector<int> source = coarse.source;
   surface = prepare_surface(std::move(coarse.vertices), std::move(coarse.faces), std::move(coarse.normals),
                             execution);
@@ -63,6 +65,37 @@ PreparedScan::PreparedScan(std::shared_ptr<const Scan> given, const Execution& e
   extent = diameter(surface.vertices, all);
 }
 
+void PreparedScan::leave_out_floor(const BodyPoints& found) {
+  if (!found.has_floor()) return;
+  std::vector<std::uint8_t> kept(scan.vertices.cols());
+  for (Index i = 0; i < scan.vertices.cols(); ++i) {
+    kept[i] = !found.on_floor(scan.vertices.col(i).cast<double>());
+    if (kept[i]) body_vertices.push_back(static_cast<int>(i));
+  }
+  Index used = 0;
+  const Faces& all = scan.faces;
+  faces_off_floor_.resize(3, all.cols());
+  for (Index f = 0; f < all.cols(); ++f) {
+    if (kept[all(0, f)] && kept[all(1, f)] && kept[all(2, f)]) faces_off_floor_.col(used++) = all.col(f);
+  }
+  faces_off_floor_.conservativeResize(3, used);
+}
+
+ScanTarget sample_body(const PreparedScan& prepared, const Points3f& points, const Points3f& normals,
+                       int count, std::uint32_t seed, const RegionLabels& labels) {
+  if (prepared.body_vertices.empty() || prepared.body_faces().cols() > 0)
+    return ScanTarget::sample(points, prepared.body_faces(), normals, count, seed, labels);
+  Points3f own(3, static_cast<Index>(prepared.body_vertices.size())), own_normals(3, own.cols());
+  RegionLabels own_labels{labels.count, {}, labels.vertices};
+  for (Index i = 0; i < own.cols(); ++i) {
+    const int v = prepared.body_vertices[i];
+    own.col(i) = points.col(v);
+    own_normals.col(i) = normals.col(v);
+    if (labels.count > 1) own_labels.scan.push_back(labels.of_point(v));
+  }
+  return ScanTarget::sample(own, prepared.body_faces(), own_normals, count, seed, own_labels);
+}
+
 Points3f transform_points(const Points3f& points, const Vec3d& origin, const Mat4d& body_from_scan) {
   const Mat3f linear = body_from_scan.topLeftCorner<3, 3>().cast<float>();
   const Vec3f shift =
@@ -74,14 +107,14 @@ Points3f transform_points(const Points3f& points, const Vec3d& origin, const Mat
 }
 
 PlacedScan::PlacedScan(const PreparedScan& prepared, const Mat4d& body_from_scan, const Execution& execution)
-    : faces_(&prepared.scan.faces) {
+    : prepared_(&prepared), faces_(&prepared.body_faces()) {
   points_ = transform_points(prepared.scan.vertices, prepared.scan.origin, body_from_scan);
   const Mat3d linear = body_from_scan.topLeftCorner<3, 3>();
   const Mat3f rotation = (linear / std::cbrt(linear.determinant())).cast<float>();
   normals_.noalias() = rotation * prepared.normals;
   execution.parallel_for(2, 1, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t job = begin; job < end; ++job) {
-      if (job == 0) tree_ = KdTree(points_);
+      if (job == 0) tree_ = KdTree(points_, prepared.body_vertices);
       if (job == 1 && faces_->cols() > 0) mesh_.emplace(points_, *faces_);
     }
   });
