@@ -19,8 +19,11 @@ double extremity_misfit(const FitModel& model, const ScanTarget& scan, const Pos
   for (const int v : model.order) {
     const int segment = model.body.segment[v];
     if (segment != kLimbs[limb].end && segment != kLimbs[limb].tip) continue;
-    sum += std::sqrt(
-        scan.by_position_and_normal.nearest(posed.vertices.col(v), posed.normals.col(v)).squared_distance);
+    const Vec3f x = posed.vertices.col(v);
+    const Neighbour facing = scan.nearest(v, x, posed.normals.col(v), true);
+    if (facing.index < 0) continue;
+    if (scan.unseen(facing.index, (x - scan.points.col(facing.index)).squaredNorm())) continue;
+    sum += std::sqrt(facing.squared_distance);
     if (++count == kMostVertices) break;
   }
   return count > 0 ? sum / count : 0;

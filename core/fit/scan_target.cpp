@@ -44,6 +44,14 @@ ScanTarget ScanTarget::sample(const Points3f& vertices, const Faces& faces, cons
   return from_points(std::move(points), std::move(directions), std::move(sample_labels));
 }
 
+void ScanTarget::mark_rim(const Points3f& rim, float radius) {
+  at_rim.clear();
+  if (rim.cols() == 0) return;
+  const KdTree tree(rim);
+  for (Index i = 0; i < points.cols(); ++i)
+    at_rim.push_back(tree.nearest(points.col(i)).squared_distance < radius * radius);
+}
+
 ScanTarget ScanTarget::from_points(Points3f points, Points3f normals, RegionLabels labels) {
   ScanTarget target;
   target.points = std::move(points);

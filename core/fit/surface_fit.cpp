@@ -23,22 +23,24 @@ float robust_weight(float squared_distance, float normal_agreement, float sigma)
                                    const FitStage& stage, float sigma, std::vector<Correspondence>& matches,
                                    const Execution& execution) {
   matches.resize(std::min<std::size_t>(stage.samples, model.order.size()));
-  execution.parallel_for(static_cast<std::ptrdiff_t>(matches.size()), 256,
-                         [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-                           for (std::ptrdiff_t i = begin; i < end; ++i) {
-                             const int v = model.order[i];
-                             const Vec3f x = posed.vertices.col(v), n = posed.normals.col(v);
-                             const int y = scan.nearest(v, x, n, stage.normals_in_search).index;
-                             if (y < 0) {
-                               matches[i] = {v, 0, 0, n, Vec3f::Zero()};
-                               continue;
-                             }
-                             const Vec3f error = x - scan.points.col(y);
-                             const Vec3f normal = scan.normals.col(y);
-                             const float weight = robust_weight(error.squaredNorm(), normal.dot(n), sigma);
-                             matches[i] = {v, weight, static_cast<float>(stage.isotropy), normal, error};
-                           }
-                         });
+  execution.parallel_for(
+      static_cast<std::ptrdiff_t>(matches.size()), 256, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        for (std::ptrdiff_t i = begin; i < end; ++i) {
+          const int v = model.order[i];
+          const Vec3f x = posed.vertices.col(v), n = posed.normals.col(v);
+          const int y = scan.nearest(v, x, n, stage.normals_in_search).index;
+          if (y < 0) {
+            matches[i] = {v, 0, 0, n, Vec3f::Zero()};
+            continue;
+          }
+          const Vec3f error = x - scan.points.col(y);
+          const Vec3f normal = scan.normals.col(y);
+          const float weight = scan.unseen(y, error.squaredNorm())
+                                   ? 0
+                                   : robust_weight(error.squaredNorm(), normal.dot(n), sigma);
+          matches[i] = {v, weight, static_cast<float>(stage.isotropy), normal, error};
+        }
+      });
 }
 
 /// Samples of the scan matched to the model.
@@ -164,11 +166,13 @@ FitScore score_fit(const FitModel& model, const ScanTarget& scan, const BodyStat
   for (int i = 0; i < model_count; ++i) {
     const int v = model.order[i];
     const Vec3f x = posed.vertices.col(v), n = posed.normals.col(v);
+    const Neighbour facing = scan.nearest(v, x, n, true);
+    if (facing.index < 0 || scan.unseen(facing.index, (x - scan.points.col(facing.index)).squaredNorm()))
+      continue;
     const Neighbour y = scan.nearest(v, x, n, false);
-    if (y.index < 0) continue;
     of_model.push_back(std::sqrt(y.squared_distance));
     opposed += scan.normals.col(y.index).dot(n) < 0;
-    with_normals += std::sqrt(scan.nearest(v, x, n, true).squared_distance);
+    with_normals += std::sqrt(facing.squared_distance);
   }
   score.model_to_scan = with_normals / static_cast<double>(std::max<std::size_t>(1, of_model.size()));
   with_normals = 0;

@@ -35,7 +35,8 @@ struct FitSchedule {
   static FitSchedule polish();
 };
 
-/// How well a body explains a scan and the scan a body; distances between samples, m.
+/// How well a body explains a scan and the scan a body; distances between samples, m. Parts of the body over
+/// a hole of the scan or beyond its rim do not count.
 struct FitScore {
   /// Means of the distances in position and normal (ScanTarget::kNormalWeight): two limbs that lie in each
   /// other's place are near to the scan's points, but not to points that face their way.

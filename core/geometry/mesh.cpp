@@ -44,6 +44,37 @@ Eigen::VectorXf vertex_areas(const Points3f& vertices, const Faces& faces) {
   return areas;
 }
 
+std::vector<int> rim_vertices(const Points3f& vertices, const Faces& faces, float least_extent) {
+  std::vector<std::pair<int, int>> edges;
+  edges.reserve(static_cast<std::size_t>(faces.size()));
+  for (Index f = 0; f < faces.cols(); ++f) {
+    for (int k = 0; k < 3; ++k) edges.push_back(std::minmax(int{faces(k, f)}, int{faces((k + 1) % 3, f)}));
+  }
+  std::sort(edges.begin(), edges.end());
+  // Rims are the connected groups of the edges that are there once.
+  std::vector<int> group(static_cast<std::size_t>(vertices.cols()));
+  std::iota(group.begin(), group.end(), 0);
+  const auto root = [&group](int v) {
+    while (group[v] != v) v = group[v] = group[group[v]];
+    return v;
+  };
+  std::vector<int> rim;
+  for (std::size_t i = 0, next = 0; i < edges.size(); i = next) {
+    for (next = i + 1; next < edges.size() && edges[next] == edges[i];) ++next;
+    if (next > i + 1) continue;
+    rim.insert(rim.end(), {edges[i].first, edges[i].second});
+    group[root(edges[i].first)] = root(edges[i].second);
+  }
+  std::sort(rim.begin(), rim.end());
+  rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
+  std::unordered_map<int, Eigen::AlignedBox3f> boxes;
+  for (const int v : rim) boxes[root(v)].extend(Vec3f(vertices.col(v)));
+  rim.erase(std::remove_if(rim.begin(), rim.end(),
+                           [&](int v) { return boxes[root(v)].diagonal().norm() < least_extent; }),
+            rim.end());
+  return rim;
+}
+
 double signed_volume(const Points3f& vertices, const Faces& faces) {
   double six_volumes = 0;
   for (Index f = 0; f < faces.cols(); ++f) {

@@ -14,6 +14,10 @@ Points3f vertex_normals(const Points3f& vertices, const Faces& faces);
 /// Third of the area of the incident triangles, a vertex.
 Eigen::VectorXf vertex_areas(const Points3f& vertices, const Faces& faces);
 
+/// Vertices on the rims of an open mesh, in rising order: those of edges that one triangle alone has. Rims
+/// whose bounding box has a diagonal below `least_extent` are cracks and left out.
+std::vector<int> rim_vertices(const Points3f& vertices, const Faces& faces, float least_extent);
+
 /// Volume enclosed by a closed mesh, signed: positive when faces are counter-clockwise seen from outside.
 double signed_volume(const Points3f& vertices, const Faces& faces);
 

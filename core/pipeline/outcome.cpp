@@ -101,8 +101,8 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
   const BodyModel& body = input.models.body;
   const PlacedScan placed(input.scan, input.body_from_scan, execution);
   const ScanSurface surface = placed.surface();
-  const ScanTarget samples = sample_body(input.scan, placed.points(), placed.normals(), kRefineSamples,
-                                         input.settings.seed + 17, input.regions);
+  const ScanTarget samples = sample_body(input.scan, placed.points(), placed.normals(), input.body_from_scan,
+                                         kRefineSamples, input.settings.seed + 17, input.regions);
   BodyState state = input.fit.state;
   if (input.refine) {
     refine_fit(input.fit_model, surface, samples, RefineSettings(), state, execution, input.regions);

@@ -216,7 +216,8 @@ RegistrationPipeline::Candidate RegistrationPipeline::fit_candidate(std::size_t 
     candidate.fit.state = candidate.initial;
     return candidate;
   }
-  const ScanTarget target = sample_body(*scan_, points, normals, kFitSamples, settings_.seed, regions_);
+  const ScanTarget target =
+      sample_body(*scan_, points, normals, candidate.body_from_scan, kFitSamples, settings_.seed, regions_);
   const std::vector<LandmarkTarget>& targets = candidate.seen.targets;
   if (start_is_given(settings_)) {
     candidate.fit = fit_from_state(*fit_model_, target, candidate.initial, to_string(settings_.init), targets,

@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kCoarseVertices = 40000;
 constexpr int kCloudNeighbours = 12;
+constexpr double kLeastRim = 0.03;  // of the body's extent: some 5 cm
+constexpr float kRimReach = 0.02f;  // m
 constexpr Index kLargestCloudForNormals = 150000;
 
 /// Normals of a cloud: of a thinned copy when it is large, each point then takes those of its nearest sample.
@@ -63,6 +65,11 @@ PreparedScan::PreparedScan(std::shared_ptr<const Scan> given, const Execution& e
   const BodyPoints all{std::vector<std::uint8_t>(surface.vertices.cols(), 1)};
   centroid = scan.origin + vitruvian::centroid(surface.vertices, surface.faces, all);
   extent = diameter(surface.vertices, all);
+  // The coarse copy has no seams and cracks, which a file's own triangles may have everywhere.
+  const std::vector<int> on_rim =
+      rim_vertices(surface.vertices, surface.faces, static_cast<float>(kLeastRim * extent));
+  rim.resize(3, static_cast<Index>(on_rim.size()));
+  for (Index i = 0; i < rim.cols(); ++i) rim.col(i) = surface.vertices.col(on_rim[i]);
 }
 
 void PreparedScan::leave_out_floor(const BodyPoints& found) {
@@ -82,18 +89,24 @@ void PreparedScan::leave_out_floor(const BodyPoints& found) {
 }
 
 ScanTarget sample_body(const PreparedScan& prepared, const Points3f& points, const Points3f& normals,
-                       int count, std::uint32_t seed, const RegionLabels& labels) {
-  if (prepared.body_vertices.empty() || prepared.body_faces().cols() > 0)
-    return ScanTarget::sample(points, prepared.body_faces(), normals, count, seed, labels);
-  Points3f own(3, static_cast<Index>(prepared.body_vertices.size())), own_normals(3, own.cols());
-  RegionLabels own_labels{labels.count, {}, labels.vertices};
-  for (Index i = 0; i < own.cols(); ++i) {
-    const int v = prepared.body_vertices[i];
-    own.col(i) = points.col(v);
-    own_normals.col(i) = normals.col(v);
-    if (labels.count > 1) own_labels.scan.push_back(labels.of_point(v));
+                       const Mat4d& body_from_scan, int count, std::uint32_t seed,
+                       const RegionLabels& labels) {
+  ScanTarget target;
+  if (prepared.body_vertices.empty() || prepared.body_faces().cols() > 0) {
+    target = ScanTarget::sample(points, prepared.body_faces(), normals, count, seed, labels);
+  } else {
+    Points3f own(3, static_cast<Index>(prepared.body_vertices.size())), own_normals(3, own.cols());
+    RegionLabels own_labels{labels.count, {}, labels.vertices};
+    for (Index i = 0; i < own.cols(); ++i) {
+      const int v = prepared.body_vertices[i];
+      own.col(i) = points.col(v);
+      own_normals.col(i) = normals.col(v);
+      if (labels.count > 1) own_labels.scan.push_back(labels.of_point(v));
+    }
+    target = ScanTarget::sample(own, prepared.body_faces(), own_normals, count, seed, own_labels);
   }
-  return ScanTarget::sample(own, prepared.body_faces(), own_normals, count, seed, own_labels);
+  target.mark_rim(transform_points(prepared.rim, prepared.scan.origin, body_from_scan), kRimReach);
+  return target;
 }
 
 Points3f transform_points(const Points3f& points, const Vec3d& origin, const Mat4d& body_from_scan) {

@@ -24,6 +24,7 @@ struct PreparedScan {
   /// (empty: all), and the triangles that have all corners among them.
   std::vector<int> body_vertices;
   const Faces& body_faces() const { return body_vertices.empty() ? scan.faces : faces_off_floor_; }
+  Points3f rim;    ///< points on the rims of the scan's holes, as scan.vertices; none for a cloud
   Vec3d centroid;  ///< scan frame: area-weighted mean of the coarse copy
   double extent;   ///< largest distance between two of its points, file units
 
@@ -61,7 +62,8 @@ class PlacedScan {
 /// frame.
 /// @param labels  of the scan's own vertices.
 ScanTarget sample_body(const PreparedScan& prepared, const Points3f& points, const Points3f& normals,
-                       int count, std::uint32_t seed, const RegionLabels& labels = {});
+                       const Mat4d& body_from_scan, int count, std::uint32_t seed,
+                       const RegionLabels& labels = {});
 
 /// Points given relative to `origin` in the scan frame, taken to the body frame.
 Points3f transform_points(const Points3f& points, const Vec3d& origin, const Mat4d& body_from_scan);

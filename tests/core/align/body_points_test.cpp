@@ -51,8 +51,31 @@ TEST(BodyPoints, FloorAndStraysGo) {
     EXPECT_GT(kept(body, 0, 20000), 19000);
     EXPECT_LT(kept(body, 20000, 35000), 150);
     EXPECT_EQ(kept(body, 35000, 35060), 0);
+    ASSERT_TRUE(body.has_floor());
+    long on_floor = 0, body_on_floor = 0;
+    for (Index i = 0; i < 35000; ++i) {
+      const Points3f whole = rotation * with(figure, floor).col(i);
+      (i < 20000 ? body_on_floor : on_floor) += body.on_floor(whole.col(0).cast<double>());
+    }
+    EXPECT_GT(on_floor, 14900);
+    EXPECT_LT(body_on_floor, 1000);
     const double clean = diameter(figure, find_body_points(figure));
     EXPECT_NEAR(diameter(rotation * with(with(figure, floor), strays), body), clean, 0.06 * clean);
+  }
+}
+
+// Who lay on a table has a flat back: a plane with everything on one side of it, but no floor.
+TEST(BodyPoints, AFlatBackIsTheBodys) {
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    Points3f figure = scattered_figure(random, 20000);
+    figure.row(2) = figure.row(2).cwiseMax(-0.03f);
+    EXPECT_GT((figure.row(2).array() == -0.03f).count(), 3000);
+    const BodyPoints body = find_body_points(random_rotation(random).cast<float>() * figure);
+    EXPECT_FALSE(body.has_floor());
+    EXPECT_EQ(body.floor, 0);
+    EXPECT_EQ(kept(body, 0, figure.cols()), figure.cols());
   }
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "core/fit/fit_fixtures.h"
+#include "fit/extremity_flip.h"
 #include "fit/limb_search.h"
 
 namespace vitruvian {
@@ -142,6 +143,59 @@ TEST(FitHypotheses, UseThePlainTriangulationWhenItIsTheRightOne) {
   EXPECT_FALSE(result.bad);
   EXPECT_EQ(result.refits, 1);
   EXPECT_GT(result.runner_up_gap, 0);
+}
+
+/// A state with one foot (limb 2, 3) or hand (0, 1) turned half round its shank or forearm.
+BodyState with_turned(BodyState state, int limb) {
+  const Skeleton skeleton = pose_skeleton(default_body(), state);
+  const LimbChain& chain = kLimbs[limb];
+  const Vec3d bone = skeleton.rest_joints.col(chain.end) - skeleton.rest_joints.col(chain.middle);
+  state.rotation[chain.end] =
+      Eigen::AngleAxisd(3.1, bone.normalized()).toRotationMatrix() * state.rotation[chain.end];
+  return state;
+}
+
+double angle_at(const BodyState& a, const BodyState& b, int joint) {
+  return Eigen::AngleAxisd(Mat3d(a.rotation[joint].transpose() * b.rotation[joint])).angle();
+}
+
+TEST(Extremities, OnlyTheTurnedOneMisfits) {
+  const FitModel& model = default_fit_model();
+  for (int limb = 0; limb < 4; ++limb) {
+    SCOPED_TRACE(limb);
+    const BodyState truth = test_state(10 + limb, 40 + limb);
+    const ScanTarget scan = scan_of(model, truth, kScanPoints, 36);
+    const BodyState turned = with_turned(truth, limb);
+    PosedModel posed;
+    posed.update(model, turned);
+    for (int other = 0; other < 4; ++other) {
+      const double misfit = extremity_misfit(model, scan, posed, other);
+      if (other == limb) {
+        EXPECT_GT(misfit, HypothesisSettings().bad_extremity);
+      } else {
+        EXPECT_LT(misfit, 0.014);
+      }
+    }
+    const double misfit = HypothesisSettings().bad_extremity;
+    EXPECT_TRUE(turned_extremities(model, scan, truth, misfit).empty());
+    const std::vector<BodyState> found = turned_extremities(model, scan, turned, misfit);
+    ASSERT_EQ(found.size(), 2u);
+    EXPECT_LT(angle_at(found[0], truth, kLimbs[limb].end), 0.1);
+    EXPECT_GT(score_fit(model, scan, turned).total(), score_fit(model, scan, truth).total() + 0.001);
+  }
+}
+
+// Heel and toes exchanged: the joints stay nearly right, the foot points backward.
+TEST(FitHypotheses, MendAFootTurnedBackToFront) {
+  const FitModel& model = default_fit_model();
+  const BodyState truth = test_state(10, 4);
+  const ScanTarget scan = scan_of(model, truth, kScanPoints, 37);
+  const auto landmarks = exact_landmarks(default_body(), with_turned(truth, 3));
+  const HypothesisResult result =
+      fit_hypotheses(model, scan, landmarks, {}, HypothesisSettings(), Execution(2));
+  EXPECT_FALSE(result.bad);
+  EXPECT_LT(angle_at(result.state, truth, kLimbs[3].end), 0.2);
+  EXPECT_LT(joint_distance(default_body(), result.state, truth), 0.020);
 }
 
 // A scan of something else can never be explained: everything is tried, within the budget.
