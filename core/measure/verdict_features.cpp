@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "body/model.h"
+#include "measure/statistics.h"
 
 namespace vitruvian {
 namespace {
@@ -92,10 +93,20 @@ void judge_residuals(const VerdictFeatures& f, Findings& findings) {
   }
 }
 
+void judge_parts(const VerdictFeatures& f, Findings& findings) {
+  if (f.misfit_parts.empty()) return;
+  findings.add(VerdictStatus::doubtful,
+               "may be turned back to front or in another part's place: " + listed(f.misfit_parts));
+}
+
 void judge_coverage(const VerdictFeatures& f, Findings& findings) {
-  std::vector<std::string> major, minor;
+  std::vector<std::string> major, minor, absent;
   for (std::size_t s = 0; s < kSegmentNames.size(); ++s) {
     if (f.observed_share[s] >= kObservedShare) continue;
+    if (f.observed_share[s] + f.unseen_share[s] >= kObservedShare) {
+      absent.push_back(plain_name(kSegmentNames[s]));
+      continue;
+    }
     (is_extremity(kSegmentNames[s]) ? minor : major).push_back(plain_name(kSegmentNames[s]));
   }
   if (2 * (major.size() + minor.size()) > kSegmentNames.size()) {
@@ -104,6 +115,7 @@ void judge_coverage(const VerdictFeatures& f, Findings& findings) {
   } else if (!major.empty()) {
     findings.add(VerdictStatus::doubtful, "hardly seen in the scan, so mostly guessed: " + listed(major));
   }
+  if (!absent.empty()) findings.add(VerdictStatus::ok, "not in the scan, so guessed: " + listed(absent));
   if (!minor.empty()) findings.add(VerdictStatus::ok, "hardly seen in the scan: " + listed(minor));
 }
 
@@ -143,7 +155,9 @@ double confidence_of(const VerdictFeatures& f) {
   for (const JointFinding& joint : f.joint_limit_excess_rad) excess = std::max(excess, joint.value);
   for (const JointFinding& joint : f.keypoint_disagreement_m)
     disagreement = std::max(disagreement, joint.value);
-  for (const double share : f.observed_share) seen += std::min(1.0, share / kObservedShare) / 24;
+  for (std::size_t s = 0; s < f.observed_share.size(); ++s)
+    seen += std::min(1.0, (f.observed_share[s] + f.unseen_share[s]) / kObservedShare) / 24;
+  if (!f.misfit_parts.empty()) confidence *= 0.5;
   confidence *= trust(excess, kDoubtfulJointExcess) * trust(disagreement, kDoubtfulDisagreement) * seen;
   return std::clamp(confidence, 0.0, 1.0);
 }
@@ -190,6 +204,28 @@ VerdictFeatures features_from(const SurfaceMeasurement& measurement) {
   return f;
 }
 
+void leave_out_unseen(std::span<const std::uint8_t> unseen, std::span<const std::uint8_t> segment,
+                      const SurfaceMeasurement& measurement, VerdictFeatures& features) {
+  std::array<int, 24> count{}, hidden{};
+  for (std::size_t v = 0; v < unseen.size(); ++v) {
+    ++count[segment[v]];
+    hidden[segment[v]] += unseen[v] != 0 ? 1 : 0;
+  }
+  if (std::all_of(hidden.begin(), hidden.end(), [](int n) { return n == 0; })) return;
+  std::vector<float> distances;
+  for (std::size_t s = 0; s < count.size(); ++s)
+    features.unseen_share[s] = count[s] > 0 ? static_cast<double>(hidden[s]) / count[s] : 0;
+  for (std::size_t v = 0; v < unseen.size(); ++v) {
+    const std::size_t s = segment[v];
+    const double shown = 1 - features.unseen_share[s];
+    if (unseen[v] == 0 && features.observed_share[s] >= kObservedShare * shown)
+      distances.push_back(measurement.surface_distance_m[v]);
+  }
+  const DistanceStatistics statistics = distance_statistics(std::move(distances));
+  features.model_to_scan_p95_mm = statistics.p95_mm;
+  features.model_to_scan_mean_mm = statistics.mean_mm;
+}
+
 Verdict judge(const VerdictFeatures& features) {
   for (const double number : {features.model_to_scan_p95_mm, features.scan_to_model_p95_mm,
                               features.opposed_share, features.unexplained_share, features.inside_share}) {
@@ -197,6 +233,7 @@ Verdict judge(const VerdictFeatures& features) {
   }
   Findings findings;
   judge_residuals(features, findings);
+  judge_parts(features, findings);
   judge_coverage(features, findings);
   judge_joints(features, findings);
   if (features.stature_m && (*features.stature_m < kLowStature || *features.stature_m > kHighStature)) {

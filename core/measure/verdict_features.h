@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,7 +30,12 @@ struct VerdictFeatures {
     std::array<double, 24> all_seen;
     all_seen.fill(1);
     return all_seen;
-  }();                                               ///< by segment
+  }();  ///< by segment
+  /// Share of each segment's vertices over a hole of the scan or beyond its rim: they say nothing about the
+  /// fit.
+  std::array<double, 24> unseen_share{};
+  /// Hands and feet that do not look like the scan where they lie, though other starts were tried.
+  std::vector<std::string> misfit_parts;
   std::vector<JointFinding> joint_limit_excess_rad;  ///< joints beyond their limits, by how much
   /// Distance between a confidently detected joint and the fitted one, metres.
   std::vector<JointFinding> keypoint_disagreement_m;
@@ -39,6 +46,11 @@ struct VerdictFeatures {
 
 /// The features that follow from a surface measurement; the others keep their defaults.
 VerdictFeatures features_from(const SurfaceMeasurement& measurement);
+
+/// Takes vertices that the scan cannot show out of the features: their share by segment, and the distances
+/// from model to scan without them. @param unseen, segment  one entry a template vertex.
+void leave_out_unseen(std::span<const std::uint8_t> unseen, std::span<const std::uint8_t> segment,
+                      const SurfaceMeasurement& measurement, VerdictFeatures& features);
 
 /// Judges a registration. `failed`: the body lies wrong beyond what clothes explain; `doubtful`: someone
 /// should look; `ok` otherwise. Reasons name the body parts; for `ok` they only tell what was guessed or not

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "align/frame.h"
@@ -54,6 +55,32 @@ std::vector<JointFinding> keypoint_disagreement(const std::vector<LandmarkTarget
     findings.push_back({body.joint_names[l.joint], (landmark_position(skeleton, l) - l.target).norm()});
   }
   return findings;
+}
+
+/// Which template vertices lie over a hole of the scan or beyond its rim.
+std::vector<std::uint8_t> unseen_vertices(const Points3f& vertices, const Points3f& normals,
+                                          const ScanTarget& samples) {
+  std::vector<std::uint8_t> unseen(static_cast<std::size_t>(vertices.cols()), 0);
+  if (samples.at_rim.empty()) return unseen;
+  for (Index v = 0; v < vertices.cols(); ++v) {
+    const int y = samples.by_position_and_normal.nearest(vertices.col(v), normals.col(v)).index;
+    unseen[v] = samples.unseen(y, (vertices.col(v) - samples.points.col(y)).squaredNorm()) ? 1 : 0;
+  }
+  return unseen;
+}
+
+/// Hands and feet that still misfit where the search for other starts ended without a good one.
+std::vector<std::string> misfit_parts(const HypothesisResult& fit) {
+  const HypothesisSettings limits;
+  const bool opposed = fit.score.opposed_normals > limits.bad_opposed_bare;
+  const bool away = fit.score.scan_to_model_p99 > limits.bad_bare_scan_to_model_p99;
+  std::vector<std::string> parts;
+  if (!fit.bad || fit.limb_away || !(opposed || away)) return parts;
+  constexpr std::array<const char*, 4> kNames = {"left hand", "right hand", "left foot", "right foot"};
+  for (std::size_t limb = 0; limb < kNames.size(); ++limb) {
+    if (fit.misfit_limbs[limb]) parts.emplace_back(kNames[limb]);
+  }
+  return parts;
 }
 
 Points3d scan_from_body(const OutcomeInput& input, const Points3d& body_points) {
@@ -115,6 +142,8 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
 
   const Skeleton skeleton = pose_skeleton(body, state);
   VerdictFeatures features = features_from(measured);
+  leave_out_unseen(unseen_vertices(vertices_float, normals, samples), body.segment, measured, features);
+  features.misfit_parts = misfit_parts(input.fit);
   features.joint_limit_excess_rad = limit_excess(body, input.models.prior, state);
   features.keypoint_disagreement_m = keypoint_disagreement(input.targets, body, skeleton);
   features.stature_m = standing_stature(body, state.betas);

@@ -138,5 +138,47 @@ TEST(Verdict, FeaturesComeFromTheMeasurement) {
   EXPECT_EQ(f.observed_share[1], 1);
 }
 
+TEST(Verdict, PartsThatTheScanCannotShowAreNamedAndChangeNothing) {
+  VerdictFeatures features;
+  features.observed_share[18] = 0.1;
+  features.unseen_share[18] = 0.8;
+  const Verdict verdict = judge(features);
+  EXPECT_EQ(verdict.status, VerdictStatus::ok);
+  ASSERT_EQ(verdict.reasons.size(), 1u);
+  EXPECT_NE(verdict.reasons[0].find(plain_name(kSegmentNames[18])), std::string::npos);
+  EXPECT_GT(verdict.confidence, 0.99);
+  features.unseen_share[18] = 0.2;
+  EXPECT_EQ(judge(features).status, VerdictStatus::doubtful);
+}
+
+TEST(Verdict, AMisfitHandMakesItDoubtfulAndIsNamed) {
+  VerdictFeatures features;
+  features.misfit_parts = {"left hand"};
+  const Verdict verdict = judge(features);
+  EXPECT_EQ(verdict.status, VerdictStatus::doubtful);
+  EXPECT_NE(verdict.reasons.at(0).find("left hand"), std::string::npos);
+  EXPECT_LT(verdict.confidence, 0.6);
+}
+
+TEST(Verdict, DistancesOverAHoleDoNotCount) {
+  SurfaceMeasurement measurement;
+  std::vector<std::uint8_t> segment(200, 0), unseen(200, 0);
+  for (int v = 0; v < 200; ++v) {
+    unseen[v] = v < 80 ? 1 : 0;
+    measurement.surface_distance_m.push_back(v < 80 ? 0.2f : 0.001f);
+  }
+  VerdictFeatures features;
+  features.model_to_scan_p95_mm = 200;
+  features.observed_share[0] = 0.6;
+  leave_out_unseen(unseen, segment, measurement, features);
+  EXPECT_NEAR(features.model_to_scan_p95_mm, 1, 1e-3);
+  EXPECT_NEAR(features.unseen_share[0], 0.4, 1e-9);
+  // Without holes nothing changes.
+  VerdictFeatures whole;
+  whole.model_to_scan_p95_mm = 7;
+  leave_out_unseen(std::vector<std::uint8_t>(200, 0), segment, measurement, whole);
+  EXPECT_EQ(whole.model_to_scan_p95_mm, 7);
+}
+
 }  // namespace
 }  // namespace vitruvian
