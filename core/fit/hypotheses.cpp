@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "fit/extremity_flip.h"
 #include "fit/limb_search.h"
@@ -214,8 +215,15 @@ int mirrored_landmark(int landmark) {
 
 HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
                                 const std::vector<LandmarkTarget>& landmarks,
-                                const std::vector<LandmarkTarget>& plain, const HypothesisSettings& settings,
+                                const std::vector<LandmarkTarget>& plain, const HypothesisSettings& given,
                                 const Execution& execution) {
+  HypothesisSettings settings = given;
+  if (!scan.at_rim.empty()) {
+    // Of a thin part that was scanned from one side alone the other side is near, faces away, and is no
+    // fault.
+    settings.bad_opposed_bare = settings.bad_opposed_clothed;
+    settings.bad_bare_model_to_scan_p99 = std::numeric_limits<double>::infinity();
+  }
   HypothesisResult best;
   std::vector<BodyState> tried;
   int budget = settings.refit_budget;

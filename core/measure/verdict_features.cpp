@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -21,6 +22,7 @@ constexpr double kDoubtfulScanToModel = 45, kFailedScanToModel = 150;
 // Right fits of bare bodies stay under 3.0 % opposed normals, of clothed ones under 12 %; residuals tell
 // which it is.
 constexpr double kBareScanToModel = 26, kBareOpposed = 0.033, kClothedOpposed = 0.12;
+constexpr double kLargestUnseen = 0.05;  // mean share over the segments
 constexpr double kDoubtfulUnexplained = 0.05;
 constexpr double kDoubtfulJointExcess = 0.35;   // rad, 20 degrees beyond the limit
 constexpr double kDoubtfulDisagreement = 0.20;  // m, several times the detector's own error
@@ -47,6 +49,14 @@ std::string listed(const std::vector<std::string>& names) {
     result += names[i];
   }
   return result;
+}
+
+/// Share of opposed normals that speaks against a fit. Of thin parts scanned from one side alone the other
+/// side is near and faces away.
+double opposed_limit(const VerdictFeatures& f) {
+  const double unseen = std::accumulate(f.unseen_share.begin(), f.unseen_share.end(), 0.0) / 24;
+  return f.scan_to_model_p95_mm < kBareScanToModel && unseen < kLargestUnseen ? kBareOpposed
+                                                                              : kClothedOpposed;
 }
 
 /// Collects findings; the worst status wins.
@@ -83,8 +93,7 @@ void judge_residuals(const VerdictFeatures& f, Findings& findings) {
         text("parts of the body lie where the scan has no surface: 5 %% of it is more than %.0f mm away",
              f.model_to_scan_p95_mm));
   }
-  const bool bare = f.scan_to_model_p95_mm < kBareScanToModel;
-  if (f.opposed_share > (bare ? kBareOpposed : kClothedOpposed)) {
+  if (f.opposed_share > opposed_limit(f)) {
     findings.add(
         VerdictStatus::doubtful,
         text("%.1f %% of the body's surface faces against the scan's: two limbs may be exchanged or a part "
@@ -148,8 +157,7 @@ double trust(double value, double doubtful) { return 1 / (1 + std::pow(std::max(
 double confidence_of(const VerdictFeatures& f) {
   double confidence =
       trust(f.scan_to_model_p95_mm, kDoubtfulScanToModel) *
-      trust(f.model_to_scan_p95_mm, kDoubtfulModelToScan) *
-      trust(f.opposed_share, f.scan_to_model_p95_mm < kBareScanToModel ? kBareOpposed : kClothedOpposed) *
+      trust(f.model_to_scan_p95_mm, kDoubtfulModelToScan) * trust(f.opposed_share, opposed_limit(f)) *
       trust(f.unexplained_share, kDoubtfulUnexplained) * trust(f.inside_share, kDoubtfulInside);
   double excess = 0, disagreement = 0, seen = 0;
   for (const JointFinding& joint : f.joint_limit_excess_rad) excess = std::max(excess, joint.value);

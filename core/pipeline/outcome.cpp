@@ -58,10 +58,11 @@ std::vector<JointFinding> keypoint_disagreement(const std::vector<LandmarkTarget
 }
 
 /// Which template vertices lie over a hole of the scan or beyond its rim.
-std::vector<std::uint8_t> unseen_vertices(const Points3f& vertices, const Points3f& normals,
+std::vector<std::uint8_t> unseen_vertices(const BodyModel& body, const Points3d& posed,
                                           const ScanTarget& samples) {
-  std::vector<std::uint8_t> unseen(static_cast<std::size_t>(vertices.cols()), 0);
+  std::vector<std::uint8_t> unseen(static_cast<std::size_t>(posed.cols()), 0);
   if (samples.at_rim.empty()) return unseen;
+  const Points3f vertices = posed.cast<float>(), normals = vertex_normals(vertices, body.faces);
   for (Index v = 0; v < vertices.cols(); ++v) {
     const int y = samples.by_position_and_normal.nearest(vertices.col(v), normals.col(v)).index;
     unseen[v] = samples.unseen(y, (vertices.col(v) - samples.points.col(y)).squaredNorm()) ? 1 : 0;
@@ -142,7 +143,7 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
 
   const Skeleton skeleton = pose_skeleton(body, state);
   VerdictFeatures features = features_from(measured);
-  leave_out_unseen(unseen_vertices(vertices_float, normals, samples), body.segment, measured, features);
+  leave_out_unseen(unseen_vertices(body, vertices, samples), body.segment, measured, features);
   features.misfit_parts = misfit_parts(input.fit);
   features.joint_limit_excess_rad = limit_excess(body, input.models.prior, state);
   features.keypoint_disagreement_m = keypoint_disagreement(input.targets, body, skeleton);
