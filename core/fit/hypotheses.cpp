@@ -181,7 +181,10 @@ void judge(const FitModel& model, const ScanTarget& scan, const HypothesisSettin
 bool worth_trying(const Start& start, const HypothesisResult& best) {
   const auto& misfit = best.misfit_limbs;
   const bool arms = misfit[0] || misfit[1], legs = misfit[2] || misfit[3];
-  if (best.limb_away || arms == legs || start.source == Source::plain) return true;
+  // Whole limbs away from the scan are not brought back by exchanging hands or feet alone.
+  const bool ends_only = (start.hands && !start.elbows) || (start.feet && !start.knees);
+  if (best.limb_away) return !ends_only;
+  if (arms == legs || start.source == Source::plain) return true;
   return arms ? start.moves_arms() : start.moves_legs();
 }
 
@@ -249,7 +252,9 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
     if (!first && !best.limb_away && fit.score.total() > kAllWrong * best.score.total()) continue;
     const int repairs = repair(model, scan, settings, fit, budget, execution);
     if (repairs > 0) tried.push_back(fit.state);
-    const int turned = turn_extremities(model, scan, settings, fit, budget, execution);
+    const int turned = is_unexplained_at_large(fit.score, settings)
+                           ? 0
+                           : turn_extremities(model, scan, settings, fit, budget, execution);
     fit_surface(model, scan, FitSchedule::polish(), {}, fit.state, execution);
     fit.score = score_fit(model, scan, fit.state);
     const double gap = fit.score.total() - best.score.total();
