@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/align/body_shapes.h"
 
@@ -63,6 +64,38 @@ TEST(PreparedScan, LeavesAFloorOutOfTheBody) {
   }
 }
 
+TEST(PreparedScan, SamplesKeepTheLabelsOfTheScansVertices) {
+  for (const bool with_faces : {true, false}) {
+    SCOPED_TRACE(with_faces);
+    Index own = 0;
+    Scan scan = standing_skittle(with_faces, own);
+    // The floor comes first, so that a point's place among the body's is not its place in the scan.
+    const Index floor = scan.vertices.cols() - own;
+    Points3f turned(3, scan.vertices.cols());
+    turned << scan.vertices.rightCols(floor), scan.vertices.leftCols(own);
+    scan.vertices = turned;
+    for (Index f = 0; f < scan.faces.cols(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        int& v = scan.faces(k, f);
+        v = static_cast<int>(v < own ? v + floor : v - own);
+      }
+    }
+    const float middle = scan.vertices.row(1).mean();
+    RegionLabels labels{2, {}, {}};
+    for (Index i = 0; i < scan.vertices.cols(); ++i) labels.scan.push_back(scan.vertices(1, i) > middle);
+    const PreparedScan prepared(std::move(scan), Execution(1));
+    ASSERT_FALSE(prepared.body_vertices.empty());
+    const ScanTarget samples =
+        sample_body(prepared, prepared.scan.vertices, prepared.normals, Mat4d::Identity(), 500, 1, labels);
+    ASSERT_EQ(samples.regions.count, 2);
+    ASSERT_EQ(samples.regions.scan.size(), static_cast<std::size_t>(samples.points.cols()));
+    for (Index i = 0; i < samples.points.cols(); ++i) {
+      const float height = samples.points(1, i) - middle;
+      if (std::fabs(height) > 0.05f) EXPECT_EQ(samples.regions.of_point(i), height > 0 ? 1 : 0);
+    }
+  }
+}
+
 TEST(PreparedScan, KeepsAllOfAScanWithoutAFloor) {
   const Shape shape = skittle();
   Scan scan;
@@ -91,16 +124,15 @@ TEST(PreparedScan, FindsTheRimOfWhatWasCutOff) {
   const ScanTarget samples =
       sample_body(prepared, prepared.scan.vertices, prepared.normals, Mat4d::Identity(), 3000, 1);
   ASSERT_EQ(samples.at_rim.size(), 3000u);
+  int over_the_hole = 0;
   for (int i = 0; i < 3000; ++i) {
-    const float below = 0.3f - samples.points(1, i);
-    if (below > 0.06f) {
+    over_the_hole += samples.unseen(i, 0.03f * 0.03f) ? 1 : 0;
+    EXPECT_FALSE(samples.unseen(i, 0.01f * 0.01f));
+    if (samples.points(1, i) < 0.24f) {
       EXPECT_FALSE(samples.unseen(i, 1));
     }
-    if (below < 0.01f) {
-      EXPECT_TRUE(samples.unseen(i, 0.03f * 0.03f));
-      EXPECT_FALSE(samples.unseen(i, 0.01f * 0.01f));
-    }
   }
+  EXPECT_GT(over_the_hole, 20);
 }
 
 }  // namespace
