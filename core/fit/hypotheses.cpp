@@ -11,7 +11,7 @@ namespace vitruvian {
 namespace {
 
 bool is_bare(const FitScore& score, const HypothesisSettings& settings) {
-  return score.scan_to_model_p95 < settings.bare_scan_to_model_p95;
+  return score.typical < settings.bare_typical;
 }
 
 bool has_opposed_parts(const FitScore& score, const HypothesisSettings& settings) {
@@ -25,8 +25,11 @@ bool lacks_a_small_part(const FitScore& score, const HypothesisSettings& setting
 }
 
 bool is_unexplained_at_large(const FitScore& score, const HypothesisSettings& settings) {
-  return score.scan_to_model_p95 > settings.bad_scan_to_model_p95 ||
-         score.model_to_scan_p95 > settings.bad_model_to_scan_p95;
+  const bool bare = is_bare(score, settings);
+  return score.scan_to_model_p95 >
+             (bare ? settings.bad_bare_scan_to_model_p95 : settings.bad_scan_to_model_p95) ||
+         score.model_to_scan_p95 >
+             (bare ? settings.bad_bare_model_to_scan_p95 : settings.bad_model_to_scan_p95);
 }
 
 /// Whether a limb search may help: it looks for what lies away from the scan, not for what lies in its place.
@@ -36,8 +39,8 @@ bool is_unexplained(const FitScore& score, const HypothesisSettings& settings) {
 
 bool is_hopeless(const FitScore& score, const HypothesisSettings& settings) {
   return score.scan_to_model_p95 > settings.hopeless_scan_to_model_p95 ||
-         score.model_to_scan_p95 > settings.bad_model_to_scan_p95 || lacks_a_small_part(score, settings) ||
-         has_opposed_parts(score, settings);
+         score.model_to_scan_p95 > settings.bad_model_to_scan_p95 || has_opposed_parts(score, settings) ||
+         (is_bare(score, settings) && is_unexplained(score, settings));
 }
 
 constexpr std::array kShoulders = {11}, kElbows = {13}, kHips = {23}, kKnees = {25};
@@ -109,7 +112,7 @@ struct Fit {
 };
 
 constexpr int kCoarseScoreSamples = 2000;
-constexpr double kAllWrong = 2;  // times the best start's FitScore::total()
+constexpr double kAllWrong = 1.3;  // times the best start's FitScore::total()
 
 /// Whether two states pose the joints alike.
 bool same_pose(const FitModel& model, const BodyState& a, const BodyState& b, double tolerance) {
@@ -172,7 +175,8 @@ void judge(const FitModel& model, const ScanTarget& scan, const HypothesisSettin
   PosedModel posed;
   posed.update(model, result.state);
   for (int limb = 0; limb < 4; ++limb)
-    result.misfit_limbs[limb] = extremity_misfit(model, scan, posed, limb) > settings.bad_extremity;
+    result.misfit_limbs[limb] =
+        extremity_misfit(model, scan, posed, limb) > settings.bad_extremity * result.score.typical;
   result.bad = is_hopeless(result.score, settings);
   result.limb_away = is_unexplained_at_large(result.score, settings);
 }
@@ -193,7 +197,8 @@ int turn_extremities(const FitModel& model, const ScanTarget& scan, const Hypoth
                      Fit& fit, int& budget, const Execution& execution) {
   int turned = 0;
   while (budget > 0 && turned < 4) {
-    std::vector<BodyState> candidates = turned_extremities(model, scan, fit.state, settings.bad_extremity);
+    std::vector<BodyState> candidates =
+        turned_extremities(model, scan, fit.state, settings.bad_extremity * fit.score.typical);
     if (static_cast<int>(candidates.size()) > budget) candidates.resize(budget);
     if (candidates.empty()) break;
     budget -= static_cast<int>(candidates.size());
@@ -225,6 +230,7 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
     // Of a thin part that was scanned from one side alone the other side is near, faces away, and is no
     // fault.
     settings.bad_opposed_bare = settings.bad_opposed_clothed;
+    settings.bad_bare_model_to_scan_p95 = settings.bad_model_to_scan_p95;
     settings.bad_bare_model_to_scan_p99 = std::numeric_limits<double>::infinity();
   }
   HypothesisResult best;
@@ -250,7 +256,7 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
     fit.score = score_fit(model, scan, fit.state, kCoarseScoreSamples);
     // Next to a body that is right but for a hand, one that lies all wrong is not worth mending.
     if (!first && !best.limb_away && fit.score.total() > kAllWrong * best.score.total()) continue;
-    const int repairs = repair(model, scan, settings, fit, budget, execution);
+    const int repairs = first || best.limb_away ? repair(model, scan, settings, fit, budget, execution) : 0;
     if (repairs > 0) tried.push_back(fit.state);
     const int turned = is_unexplained_at_large(fit.score, settings)
                            ? 0
@@ -270,6 +276,7 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
       best.runner_up_gap = best.runner_up_gap > 0 ? std::min(best.runner_up_gap, gap) : gap;
     }
     if (!best.bad) break;
+    if (!best.limb_away) budget = std::min(budget, settings.small_part_budget);
   }
   best.refits = settings.refit_budget - budget;
   return best;

@@ -13,25 +13,27 @@ namespace vitruvian {
 /// When a fit counts as bad, and how much may be spent on finding a better one. Budgets are counts, not
 /// times, so that a result never depends on the machine's speed.
 struct HypothesisSettings {
+  /// A fit whose FitScore::typical is below this is one of a bare body, m. Right fits of bare bodies stay
+  /// below 0.0175, those of clothed ones and of other people begin at 0.022.
+  double bare_typical = 0.0195;
   /// A fit beyond either is searched for misplaced limbs; m.
-  double bad_scan_to_model_p95 = 0.045;
-  double bad_model_to_scan_p95 = 0.025;
-  /// Share of opposed normals beyond which two limbs may lie in each other's place. Right fits of bare bodies
-  /// reach 3.0 %, of clothed ones 12 %; a scan counts as bare when it is explained to
-  /// `bare_scan_to_model_p95`, m.
-  double bad_opposed_bare = 0.030, bad_opposed_clothed = 0.12;
-  double bare_scan_to_model_p95 = 0.026;
+  double bad_scan_to_model_p95 = 0.045, bad_model_to_scan_p95 = 0.025;
+  double bad_bare_scan_to_model_p95 = 0.026, bad_bare_model_to_scan_p95 = 0.014;
   /// A bare scan is explained to the last hand: beyond either its fit is bad, m.
-  double bad_bare_scan_to_model_p99 = 0.035;
-  double bad_bare_model_to_scan_p99 = 0.020;
+  double bad_bare_scan_to_model_p99 = 0.035, bad_bare_model_to_scan_p99 = 0.020;
+  /// Share of opposed normals beyond which two limbs may lie in each other's place. Right fits of bare bodies
+  /// reach 3.0 %, of clothed ones 12 %.
+  double bad_opposed_bare = 0.030, bad_opposed_clothed = 0.12;
   /// A fit that is still beyond this, or beyond bad_model_to_scan_p95, is started anew; m. Between the two
   /// lie clothes and hair: scan points without a counterpart on a body that is otherwise explained.
   double hopeless_scan_to_model_p95 = 0.09;
-  double bad_extremity = 0.018;  ///< m, extremity_misfit() beyond which a hand or foot is tried back to front
+  /// Times FitScore::typical: extremity_misfit() beyond which a hand or foot is tried back to front.
+  double bad_extremity = 1.1;
   int repair_rounds = 3;
   int candidates_per_limb = 2;
   double least_gain = 0.001;              ///< m of FitScore::total()
   int refit_budget = 48;                  ///< coarse surface fits beyond the first
+  int small_part_budget = 8;              ///< of it, for other starts when no whole limb is away
   double same_pose = 0.06;                ///< m, largest joint distance at which two starts count as one
   std::optional<BodyState> landmark_fit;  ///< of the first start, when it was done before
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace vitruvian {
 namespace {
@@ -90,6 +91,11 @@ std::vector<KdTree> model_trees(const FitModel& model, const PosedModel& posed, 
   return trees;
 }
 
+double mean(std::span<const float> values) {
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+  return sum / static_cast<double>(std::max<std::size_t>(1, values.size()));
+}
+
 double percentile(std::vector<float>& values, double share) {
   if (values.empty()) return 0;
   const auto at =
@@ -160,8 +166,7 @@ FitScore score_fit(const FitModel& model, const ScanTarget& scan, const BodyStat
   posed.update(model, state);
   FitScore score;
   int opposed = 0;
-  double with_normals = 0;
-  std::vector<float> of_model, of_scan;
+  std::vector<float> of_model, of_scan, with_normals;
   const int model_count = std::min<int>(samples, static_cast<int>(model.order.size()));
   for (int i = 0; i < model_count; ++i) {
     const int v = model.order[i];
@@ -172,10 +177,11 @@ FitScore score_fit(const FitModel& model, const ScanTarget& scan, const BodyStat
     const Neighbour y = scan.nearest(v, x, n, false);
     of_model.push_back(std::sqrt(y.squared_distance));
     opposed += scan.normals.col(y.index).dot(n) < 0;
-    with_normals += std::sqrt(facing.squared_distance);
+    with_normals.push_back(std::sqrt(facing.squared_distance));
   }
-  score.model_to_scan = with_normals / static_cast<double>(std::max<std::size_t>(1, of_model.size()));
-  with_normals = 0;
+  score.model_to_scan = mean(with_normals);
+  score.typical = percentile(with_normals, 0.5);
+  with_normals.clear();
   FitStage whole{};
   whole.samples = model.body.vertex_count();
   const std::vector<KdTree> trees = model_trees(model, posed, scan.regions, whole);
@@ -189,10 +195,11 @@ FitScore score_fit(const FitModel& model, const ScanTarget& scan, const BodyStat
     const Neighbour v = trees[label].nearest(y);
     of_scan.push_back(std::sqrt(v.squared_distance));
     opposed += n.dot(posed.normals.col(v.index)) < 0;
-    with_normals += std::sqrt(trees_with_normals[label].nearest(y, n).squared_distance);
+    with_normals.push_back(std::sqrt(trees_with_normals[label].nearest(y, n).squared_distance));
   }
   const std::size_t pairs = of_model.size() + of_scan.size();
-  score.scan_to_model = with_normals / static_cast<double>(std::max<std::size_t>(1, of_scan.size()));
+  score.scan_to_model = mean(with_normals);
+  score.typical += percentile(with_normals, 0.5);
   score.model_to_scan_p95 = percentile(of_model, 0.95);
   score.scan_to_model_p95 = percentile(of_scan, 0.95);
   score.model_to_scan_p99 = percentile(of_model, 0.99);

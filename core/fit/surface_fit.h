@@ -46,6 +46,9 @@ struct FitScore {
   double scan_to_model_p95 = 0;
   double model_to_scan_p99 = 0;  ///< a hand holds a hundredth of the surface
   double scan_to_model_p99 = 0;
+  /// Sum of the medians of the distances in position and normal: how alike the two surfaces are where they
+  /// meet. A limb that lies elsewhere hardly moves it; clothes and noise do.
+  double typical = 0;
   double opposed_normals = 0;  ///< share of the nearest pairs whose normals point away from each other
   double total() const { return model_to_scan + scan_to_model; }
 };

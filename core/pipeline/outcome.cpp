@@ -70,13 +70,14 @@ std::vector<std::uint8_t> unseen_vertices(const BodyModel& body, const Points3d&
   return unseen;
 }
 
-/// Hands and feet that still misfit where the search for other starts ended without a good one.
+/// Hands and feet that still misfit where the search for other starts ended without a good one. Shoes and
+/// sleeves misfit always: they speak only when more does.
 std::vector<std::string> misfit_parts(const HypothesisResult& fit) {
   const HypothesisSettings limits;
-  const bool opposed = fit.score.opposed_normals > limits.bad_opposed_bare;
-  const bool away = fit.score.scan_to_model_p99 > limits.bad_bare_scan_to_model_p99;
+  const bool bare = fit.score.typical < limits.bare_typical;
   std::vector<std::string> parts;
-  if (!fit.bad || fit.limb_away || !(opposed || away)) return parts;
+  if (!fit.bad || fit.limb_away || !(bare || fit.score.opposed_normals > limits.bad_opposed_clothed))
+    return parts;
   constexpr std::array<const char*, 4> kNames = {"left hand", "right hand", "left foot", "right foot"};
   for (std::size_t limb = 0; limb < kNames.size(); ++limb) {
     if (fit.misfit_limbs[limb]) parts.emplace_back(kNames[limb]);

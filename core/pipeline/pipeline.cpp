@@ -254,7 +254,8 @@ void RegistrationPipeline::fit_attempt() {
   }
   Candidate candidate = fit_candidate(search_.at, unit, false);
   if (!search_.best || rank(candidate) < rank(*search_.best)) search_.best = std::move(candidate);
-  if (!search_.best->fit.bad || search_.at + 1 >= attempts_.size()) {
+  // In a wrong placement whole limbs are away.
+  if (!(search_.best->fit.bad && search_.best->fit.limb_away) || search_.at + 1 >= attempts_.size()) {
     if (settings_.solver == SolverKind::paper) fit_as_published(*search_.best);
     search_.done = true;
   } else {

@@ -168,21 +168,38 @@ TEST(Extremities, OnlyTheTurnedOneMisfits) {
     const BodyState turned = with_turned(truth, limb);
     PosedModel posed;
     posed.update(model, turned);
+    const double limit = HypothesisSettings().bad_extremity * score_fit(model, scan, turned).typical;
     for (int other = 0; other < 4; ++other) {
       const double misfit = extremity_misfit(model, scan, posed, other);
       if (other == limb) {
-        EXPECT_GT(misfit, HypothesisSettings().bad_extremity);
+        EXPECT_GT(misfit, limit);
       } else {
         EXPECT_LT(misfit, 0.014);
       }
     }
-    const double misfit = HypothesisSettings().bad_extremity;
-    EXPECT_TRUE(turned_extremities(model, scan, truth, misfit).empty());
-    const std::vector<BodyState> found = turned_extremities(model, scan, turned, misfit);
+    EXPECT_TRUE(turned_extremities(model, scan, truth, limit).empty());
+    const std::vector<BodyState> found = turned_extremities(model, scan, turned, limit);
     ASSERT_EQ(found.size(), 2u);
     EXPECT_LT(angle_at(found[0], truth, kLimbs[limb].end), 0.1);
     EXPECT_GT(score_fit(model, scan, turned).total(), score_fit(model, scan, truth).total() + 0.001);
   }
+}
+
+// An arm away from the scan must not make a bare body pass for a clothed one, whose limits are wider.
+TEST(FitScore, ALostArmLeavesTheTypicalDistance) {
+  const FitModel& model = default_fit_model();
+  const BodyState truth = test_state(20, 50);
+  const ScanTarget scan = scan_of(model, truth, kScanPoints, 38);
+  BodyState lost = truth;
+  lost.rotation[kLimbs[0].root] = Eigen::AngleAxisd(2.2, Vec3d(0, -1, 0.7).normalized()).toRotationMatrix() *
+                                  lost.rotation[kLimbs[0].root];
+  ASSERT_GT(joint_distance(default_body(), lost, truth), 0.2);
+  const HypothesisSettings settings;
+  const FitScore right = score_fit(model, scan, truth), wrong = score_fit(model, scan, lost);
+  EXPECT_LT(right.typical, 0.9 * settings.bare_typical);
+  EXPECT_LT(right.model_to_scan_p95, settings.bad_bare_model_to_scan_p95);
+  EXPECT_LT(wrong.typical, settings.bare_typical);
+  EXPECT_GT(wrong.model_to_scan_p95, settings.bad_bare_model_to_scan_p95);
 }
 
 // Heel and toes exchanged: the joints stay nearly right, the foot points backward.
