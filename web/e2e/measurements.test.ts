@@ -3,6 +3,7 @@ import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { unzipSync } from "fflate";
+import { validateBytes } from "gltf-validator";
 import { AnimationMixer, Matrix4, type SkinnedMesh, Vector3 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { describe, expect } from "vitest";
@@ -87,6 +88,10 @@ describe("the measurements of the sample scan", () => {
     // Every file of the menu is in the ZIP.
     for (const [, name] of EXPORTS) expect(zip[`sample/${name}`]?.length, name).toBeGreaterThan(50);
 
+    for (const glb of [zip["sample/body.glb"]!, await registeredGlb(page)]) {
+      const { issues } = await validateBytes(Uint8Array.from(glb));
+      expect(issues.messages).toEqual([]);
+    }
     await checkAnimated(zip["sample/body.glb"]!, zip["sample/registered.ply"]!, registration);
   });
 });
@@ -96,6 +101,11 @@ async function downloadedZip(page: Parameters<typeof downloaded>[0]): Promise<Ui
   const zip = await downloaded(page, "All as ZIP");
   await page.getByText("Measurements", { exact: true }).click();
   return zip;
+}
+
+async function registeredGlb(page: Parameters<typeof downloaded>[0]): Promise<Uint8Array> {
+  await page.getByText("Distances", { exact: true }).click();
+  return downloaded(page, "registered.glb");
 }
 
 /** The GLB in three.js: its bones move the skin, and its animation holds the registered pose. */
