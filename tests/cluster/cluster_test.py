@@ -1,5 +1,6 @@
 """A cohort on a real Slurm of one node, from the installed program: one scan broken, a job killed midway, then resumed."""
 import csv
+import getpass
 import json
 import os
 import pathlib
@@ -49,6 +50,10 @@ class Cohort(unittest.TestCase):
         self.broken = str(path)
         return folder
 
+    @staticmethod
+    def at_work(folder, own="*"):
+        return any((folder / "out" / "scans").glob(f".{own}.??????"))
+
     def merge(self, folder):
         done = subprocess.run([self.tools / "cohort.py", "merge", folder / "scans.tsv", folder / "out"], capture_output=True,
                               text=True)
@@ -95,7 +100,7 @@ class Cohort(unittest.TestCase):
         job = submit()
         # The second chunk's second scan: the job has one result, is at work on the next, and has one before it.
         done, victim, waiting = ids[CHUNK : 2 * CHUNK]
-        wait_until(lambda: any(scans.glob(f".{victim}.*")), "the second scan of the second job")
+        wait_until(lambda: self.at_work(folder, victim), "the second scan of the second job")
         self.slurm.run("scancel", f"{job}_1")
         print(f"killed {job}_1 at {victim}\n", self.slurm.run("squeue"), flush=True)
         wait_until(lambda: ended(job), "the end of the array", 500)
@@ -128,6 +133,40 @@ class Cohort(unittest.TestCase):
         for registration in (by_hand, by_job):
             del registration["timing_ms"]
         self.assertEqual(by_hand, by_job)
+
+    def test_snakemake_on_slurm_killed_and_resumed(self):
+        folder = self.make("snakemake", 4, broken=2)
+        profile = folder / "profile"
+        shutil.copytree(self.tools / "profile", profile)
+        config = (profile / "config.yaml").read_text()
+        # This node has no memory to give away, and few cores.
+        (profile / "config.yaml").write_text(config.replace("--mem={resources.mem_mb}", "--mem=0"))
+        command = ["snakemake", "-s", str(self.tools / "Snakefile"), "--profile", str(profile), "--config", "list=scans.tsv",
+                   "out=out", "--set-threads", "register=1", "--groups", "register=scans", "--group-components", "scans=2"]
+
+        def run(log):
+            with open(folder / log, "w") as file:
+                return subprocess.Popen(command, cwd=folder, env=self.slurm.environment, stdin=subprocess.DEVNULL, stdout=file,
+                                        stderr=file, start_new_session=True)
+
+        self.addCleanup(lambda: print(*(f"-- {log.name}\n{log.read_text()}" for log in sorted(folder.glob("*.log"))), sep="\n"))
+        # Snakemake and all its jobs are killed, then it is run again.
+        first = run("first.log")
+        wait_until(lambda: self.at_work(folder), "a scan at work")
+        first.kill()
+        first.wait()
+        self.slurm.run("scancel", "--user", getpass.getuser())
+        wait_until(lambda: not self.slurm.run("squeue", "-h").strip(), "an empty queue")
+        self.assertEqual(self.merge(folder)[0], 1)
+
+        # One job is killed this time, and Snakemake sends it once more.
+        subprocess.run([*command, "--unlock"], cwd=folder, env=self.slurm.environment, check=True, capture_output=True)
+        second = run("second.log")
+        self.addCleanup(second.kill)
+        wait_until(lambda: self.at_work(folder), "a scan at work")
+        self.slurm.run("scancel", self.slurm.run("squeue", "-h", "--states=RUNNING", "-o", "%i").split()[0])
+        self.assertEqual(second.wait(500), 0)
+        self.check_table(folder, rows_of(folder / "out" / "cohort.csv"))
 
 
 if __name__ == "__main__":
