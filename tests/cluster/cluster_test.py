@@ -82,6 +82,15 @@ class Cohort(unittest.TestCase):
         self.assertEqual(stature, {r["id"]: r["stature_mm"] for r in rows if r["verdict"] == "ok"})
         self.assertEqual(sorted(p.name for p in (folder / "out" / "scans").iterdir()), sorted(r["id"] for r in rows))
 
+    def test_installed_program_brings_all_but_the_c_library(self):
+        listed = subprocess.run(["ldd", self.prefix / "bin" / "vitruvian"], capture_output=True, text=True, check=True).stdout
+        resolved = dict(line.strip().split(" => ") for line in listed.splitlines() if " => " in line)
+        own = {name for name, where in resolved.items() if os.path.realpath(where.split(" (")[0]).startswith(f"{self.prefix}/lib/")}
+        self.assertIn("libopencv_dnn.so.406", own)
+        self.assertLessEqual(set(resolved) - own, {"libc.so.6", "libm.so.6", "linux-vdso.so.1"})
+        notices = {p.stem for p in (self.prefix / "share/doc/vitruvian/licences/libraries").iterdir()}
+        self.assertLessEqual({"libopencv-dnn406", "libprotobuf32", "libstdc++6", "libx11-6"}, notices)
+
     def test_array_killed_midway_and_resumed(self):
         count = 24
         folder = self.make("array", count, broken=7)
