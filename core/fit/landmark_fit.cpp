@@ -67,7 +67,7 @@ double landmark_error(const Skeleton& skeleton, std::span<const LandmarkTarget> 
 }
 
 BodyState fit_landmarks(const FitModel& model, std::span<const LandmarkTarget> landmarks,
-                        const LandmarkFitSettings& settings) {
+                        const LandmarkFitSettings& settings, const FitObserver& each) {
   const int joints = model.body.joint_count();
   Points3d pose = Points3d::Zero(3, joints);
   if (model.prior.mean.size() == 3 * (joints - 1)) {
@@ -83,6 +83,22 @@ BodyState fit_landmarks(const FitModel& model, std::span<const LandmarkTarget> l
     const BodyJacobian<float> jacobian(model.body, model.groups, state, posed.skeleton, posed.rest);
     const double scale = i < settings.iterations / 2 ? 4 * settings.scale : settings.scale;
     const double gaussian = i < settings.iterations / 3 ? 4 * settings.gaussian : settings.gaussian;
+    if (each) {
+      const double share = static_cast<double>(landmarks.size()) / kLandmarksOfUnitSum;
+      each({-1,
+            scale,
+            state,
+            posed.skeleton,
+            nullptr,
+            {},
+            {},
+            landmarks,
+            scale,
+            share,
+            gaussian,
+            settings.limits,
+            settings.shape});
+    }
     equations.clear();
     for (const LandmarkTarget& l : landmarks) {
       const double squared =

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "fit/fit_observer.h"
 #include "fit/normal_equations.h"
 
 namespace vitruvian {
@@ -19,7 +20,7 @@ struct LandmarkFitSettings {
 /// weak Gaussian prior, joint limits and the shape prior; all joints, betas and translation free. Starts from
 /// the prior's mean pose, placed by the torso.
 BodyState fit_landmarks(const FitModel& model, std::span<const LandmarkTarget> landmarks,
-                        const LandmarkFitSettings& settings = {});
+                        const LandmarkFitSettings& settings = {}, const FitObserver& each = {});
 
 /// Turns and moves a body rigidly so that its torso landmarks (hips, shoulders, a little the head) meet their
 /// targets (Kabsch).

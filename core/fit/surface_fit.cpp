@@ -126,11 +126,15 @@ FitSchedule FitSchedule::after_limb_search() {
 FitSchedule FitSchedule::polish() { return {{full().stages.back()}}; }
 
 void fit_surface(const FitModel& model, const ScanTarget& scan, const FitSchedule& schedule,
-                 std::span<const LandmarkTarget> landmarks, BodyState& state, const Execution& execution) {
+                 std::span<const LandmarkTarget> landmarks, BodyState& state, const Execution& execution,
+                 const FitObserver& each) {
   NormalEquations equations(model);
   PosedModel posed;
   std::vector<Correspondence> of_model, of_scan;
+  int number = -1;
   for (const FitStage& stage : schedule.stages) {
+    ++number;
+    of_scan.clear();
     for (int i = 0; i < stage.iterations; ++i) {
       execution.check();
       posed.update(model, state);
@@ -138,13 +142,20 @@ void fit_surface(const FitModel& model, const ScanTarget& scan, const FitSchedul
           stage.sigma_begin * std::pow(stage.sigma_end / stage.sigma_begin,
                                        static_cast<double>(i) / std::max(1, stage.iterations));
       match_model(model, posed, scan, stage, static_cast<float>(sigma), of_model, execution);
-      match_scan(posed, scan, model_trees(model, posed, scan.regions, stage), stage,
-                 static_cast<float>(sigma), of_scan, execution);
+      if (stage.from_scan) {
+        match_scan(posed, scan, model_trees(model, posed, scan.regions, stage), stage,
+                   static_cast<float>(sigma), of_scan, execution);
+      }
+      if (each) {
+        each({number, sigma, state, posed.skeleton, &posed.vertices, of_model, of_scan, landmarks,
+              kLandmarkScale, stage.landmarks, stage.gaussian, stage.limits, stage.shape});
+      }
       const BodyJacobian<float> jacobian(model.body, model.groups, state, posed.skeleton, posed.rest);
       equations.clear();
       const double unit = 1 / (sigma * sigma);
       equations.add(jacobian, of_model, unit / static_cast<double>(of_model.size()), execution);
-      equations.add(jacobian, of_scan, unit / static_cast<double>(of_scan.size()), execution);
+      if (!of_scan.empty())
+        equations.add(jacobian, of_scan, unit / static_cast<double>(of_scan.size()), execution);
       if (stage.landmarks > 0 && !landmarks.empty()) {
         for (const LandmarkTarget& l : landmarks) {
           const double squared = (landmark_position(posed.skeleton, l) - l.target).squaredNorm();

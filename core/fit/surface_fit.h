@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "fit/fit_observer.h"
 #include "fit/normal_equations.h"
 #include "fit/scan_target.h"
 
@@ -21,6 +22,7 @@ struct FitStage {
   double shape;            ///< shape prior
   double landmarks;        ///< landmark term
   bool normals_in_search;  ///< neighbours by position and normal
+  bool from_scan = true;   ///< scan points pull at the model too; false: one direction only
 };
 
 struct FitSchedule {
@@ -56,7 +58,8 @@ struct FitScore {
 /// Annealed Gauss-Newton fit of pose, shape and translation to the scan: point-to-plane in both directions,
 /// robust (Geman-McClure) weights, normal compatibility.
 void fit_surface(const FitModel& model, const ScanTarget& scan, const FitSchedule& schedule,
-                 std::span<const LandmarkTarget> landmarks, BodyState& state, const Execution& execution);
+                 std::span<const LandmarkTarget> landmarks, BodyState& state, const Execution& execution,
+                 const FitObserver& each = {});
 
 /// Two-way distances over `samples` points a direction.
 FitScore score_fit(const FitModel& model, const ScanTarget& scan, const BodyState& state, int samples = 4000);
