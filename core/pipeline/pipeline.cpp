@@ -335,11 +335,13 @@ const LandmarkStage* RegistrationPipeline::landmark_stage() const {
   return attempts_.empty() ? nullptr : attempts_[search_.at].pictures();
 }
 
-std::vector<Keypoint> RegistrationPipeline::keypoints() const {
+std::vector<Keypoint> RegistrationPipeline::keypoints() const { return targets().keypoints; }
+
+PoseTargets RegistrationPipeline::targets() const {
   require(PipelineStage::keypoints);
-  if (search_.done) return search_.best->seen.keypoints;
+  if (search_.done) return search_.best->seen;
   const Mat4d frame = shown().body_from_scan(scan_->centroid, shown_unit().metres_per_unit);
-  return pose_targets(models_, settings_, shown().landmarks(), frame).keypoints;
+  return pose_targets(models_, settings_, shown().landmarks(), frame);
 }
 
 const BodyState& RegistrationPipeline::initial_pose() const {

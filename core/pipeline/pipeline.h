@@ -90,6 +90,11 @@ class RegistrationPipeline {
   /// The body that the fit starts from, body frame. @throws Error(internal) before the pose is reached.
   const BodyState& initial_pose() const;
 
+  /// What the fit is to meet, in the frame of align_finding(). @throws Error(internal) before keypoints.
+  PoseTargets targets() const;
+
+  const Settings& settings() const { return settings_; }
+  const FitModel& fit_model() const { return *fit_model_; }
   /// What is left of the scan after cropping. Valid after set_scan(), until crops are changed.
   const PreparedScan& prepared() const { return *scan_; }
 
