@@ -192,4 +192,25 @@ EMSCRIPTEN_KEEPALIVE const char* vitruvian_measured_files_report(const char* for
   return guarded([&] { return kept(open_session().measured_files_report(format)); }, kNoText);
 }
 
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_body_report() {
+  return guarded([&] { return kept(open_session().body_report()); }, kNoText);
+}
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_pose_body(const char* parameters) {
+  return guarded([&] { return kept(open_session().pose_body(parameters)); }, kNoText);
+}
+
+EMSCRIPTEN_KEEPALIVE int vitruvian_begin_lesson(const char* settings) {
+  return guarded(
+      [&] {
+        open_session().begin_lesson(settings);
+        return 1;
+      },
+      0);
+}
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_lesson_report() {
+  return guarded([&] { return kept(open_session().lesson_report()); }, kNoText);
+}
+
 }  // extern "C"

@@ -69,6 +69,8 @@ void Session::open(Buffer file, std::string name) {
   task_.require_idle();
   pipeline_.reset();
   drop_result();
+  lesson_.reset();
+  unchanged_.reset();
   scan_.reset();
   shown_ = {};
   // std::function wants what it holds to be copyable.
@@ -264,6 +266,28 @@ std::string Session::profile_report(const std::string& segment, int count) {
 
 std::string Session::measured_files_report(const std::string& format) {
   return describe_files(measured_files(measured(), format));
+}
+
+std::string Session::pose_body(const std::string& parameters) {
+  posed_ = wasm::pose_body(models_.body, parameters);
+  return text_of(describe_posed(posed_));
+}
+
+void Session::begin_lesson(const std::string& settings) {
+  task_.require_idle();
+  if (!holds(PipelineStage::keypoints)) throw Error(ErrorCode::usage, "find the keypoints first");
+  lesson_.reset();
+  unchanged_.reset();
+  const LessonSettings chosen = parse_lesson(settings);
+  task_.start([this, chosen] {
+    unchanged_ = run_lesson(*pipeline_, {}, task_.execution());
+    lesson_ = chosen == LessonSettings() ? unchanged_ : run_lesson(*pipeline_, chosen, task_.execution());
+  });
+}
+
+std::string Session::lesson_report() const {
+  if (!lesson_) throw Error(ErrorCode::internal, "no lesson has been run");
+  return text_of(describe_lesson(*lesson_, *unchanged_));
 }
 
 }  // namespace vitruvian::wasm

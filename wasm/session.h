@@ -15,6 +15,7 @@
 #include "pipeline/models.h"
 #include "pipeline/pipeline.h"
 #include "task.h"
+#include "teaching_json.h"
 
 namespace vitruvian::wasm {
 
@@ -82,6 +83,15 @@ class Session {
   /// As files_report(); see measured_files().
   std::string measured_files_report(const std::string& format);
 
+  /// describe_body() of the model that is loaded.
+  std::string body_report() const { return describe_body(models_).dump(); }
+  /// Poses the body by hand, with or without a scan. @return describe_posed().
+  std::string pose_body(const std::string& parameters);
+  /// Starts the fit again with something changed, recorded. @param settings  as parse_lesson() reads them.
+  void begin_lesson(const std::string& settings);
+  /// describe_lesson() of the last one, compared with the one with nothing changed.
+  std::string lesson_report() const;
+
  private:
   bool holds(PipelineStage stage) const;
   void advance();
@@ -109,6 +119,9 @@ class Session {
   Points3f body_vertices_;   ///< registered, body frame
   Points3f posed_vertices_;  ///< before the fit, body frame
   std::vector<ExportedFile> files_;
+  PosedBody posed_;
+  std::optional<Lesson> lesson_;
+  std::optional<Lesson> unchanged_;  ///< the lesson with nothing changed, to compare with
 };
 
 }  // namespace vitruvian::wasm
