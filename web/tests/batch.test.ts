@@ -2,21 +2,24 @@ import { beforeEach, describe, expect, it } from "vitest";
 import { isScanName, scansAmong } from "../src/batch/files";
 import * as queue from "../src/batch/queue";
 import { batchCsv } from "../src/batch/table";
-import { CoreError } from "../src/core/types";
+import { CoreError, defaultSettings } from "../src/core/types";
 
 const file = (name: string, text = "x") => new File([text], name);
 
+const start = { betas: [1], pose: [0, 0, 0], translation_m: [0, 1, 0] as const, model_sha256: "abc" };
 const outcome: queue.Outcome = {
   verdict: { status: "doubtful", confidence: 0.5, reasons: ['a "bad", arm', "cold"] },
   mean_mm: 2.5,
   p95_mm: 7,
   scan_p95_mm: null,
   seconds: 3.25,
+  start,
   files: new Blob(),
 };
 
 beforeEach(() => {
   queue.items.value = [];
+  queue.startFrom.value = null;
 });
 
 describe("the queue", () => {
@@ -35,6 +38,17 @@ describe("the queue", () => {
       ["done", 4],
       ["waiting", 14],
     ]);
+  });
+
+  it("lets others start from a body, but not that body from itself", () => {
+    queue.add([file("a.ply"), file("b.ply")]);
+    const [a, b] = queue.items.value as [queue.Item, queue.Item];
+    queue.update(a.id, { status: "done", outcome });
+    queue.startFrom.value = a.id;
+    expect(queue.settingsOf(b)).toEqual({ ...defaultSettings, init: "file", start });
+    expect(queue.settingsOf(a)).toEqual(defaultSettings);
+    queue.remove(a.id);
+    expect(queue.settingsOf(b)).toEqual(defaultSettings);
   });
 
   it("does not let a scan at work be removed", () => {

@@ -77,6 +77,18 @@ export function ItemPanel({ item }: { item: Item }) {
           repeat it.
         </p>
       )}
+      {outcome?.start && (
+        <label class="check">
+          <input
+            type="checkbox"
+            checked={queue.startFrom.value === id}
+            onChange={(event) => {
+              queue.startFrom.value = event.currentTarget.checked ? id : null;
+            }}
+          />
+          Start all other scans from this body: for one person in one pose, scanned many times
+        </label>
+      )}
       <h3>Settings</h3>
       <label class="check">
         <input

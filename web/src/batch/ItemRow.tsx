@@ -27,6 +27,7 @@ export function ItemRow({ item }: { item: Item }) {
         <span class="quiet">
           {name}, {bytes(item.bytes)}
           {item.settings && ", own settings"}
+          {queue.startFrom.value === id && ", start for the rest"}
         </span>
       </div>
       <Status item={item} />

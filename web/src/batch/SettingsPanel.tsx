@@ -8,6 +8,11 @@ const BODIES: [Gender, string][] = [
   ["female", "Female"],
   ["male", "Male"],
 ];
+const METHODS: [Settings["method"], string][] = [
+  ["ours", "Fast"],
+  ["paper", "As published"],
+  ["paper-cpu", "As published, CPU"],
+];
 const DETAIL: [Settings["detail"], string][] = [
   ["off", "Body model only"],
   ["vertex", "Per vertex"],
@@ -31,6 +36,7 @@ const UP: [Axis | "auto", string][] = [
 
 /** What holds for the whole batch. */
 export function SettingsPanel() {
+  const start = queue.itemOf(queue.startFrom.value);
   return (
     <aside aria-label="Settings for all scans">
       <h2>Settings for all scans</h2>
@@ -41,6 +47,25 @@ export function SettingsPanel() {
         }}
       />
       <p class="quiet">They count for scans that are still to do. Choose a scan to give it its own.</p>
+      <h3>Start</h3>
+      {start ? (
+        <p>
+          Every other scan starts from the body of <strong>{start.folder}</strong>.{" "}
+          <button
+            type="button"
+            onClick={() => {
+              queue.startFrom.value = null;
+            }}
+          >
+            Find each by itself
+          </button>
+        </p>
+      ) : (
+        <p class="quiet">
+          Each scan is found by itself. When one person was scanned many times in one pose, open a registered
+          scan’s details to start the others from it.
+        </p>
+      )}
       <h3>Keep results</h3>
       <label class="check">
         <input
@@ -72,6 +97,13 @@ export function SettingsChoices({ settings, disabled = false, onChange }: Choice
   const set = (change: Partial<Settings>) => onChange({ ...settings, ...change });
   return (
     <>
+      <Choice
+        label="Method"
+        value={settings.method}
+        options={METHODS}
+        disabled={disabled}
+        onChange={(method) => set({ method })}
+      />
       <Choice
         label="Body model"
         value={settings.gender}

@@ -7,15 +7,20 @@ export async function outcomeOf(
   files: readonly OutputFile[],
   seconds: number,
 ): Promise<Outcome> {
-  const { verdict, surface_error } = registration;
+  const { verdict, surface_error, parameters, model } = registration;
   return {
     verdict,
     mean_mm: surface_error?.surface_all.mean_mm ?? null,
     p95_mm: surface_error?.surface_all.p95_mm ?? null,
     scan_p95_mm: surface_error?.scan_to_model.p95_mm ?? null,
     seconds,
+    start: parameters && { ...withoutOffsets(parameters), model_sha256: model.sha256 },
     files: await packed(files),
   };
+}
+
+function withoutOffsets({ offsets: _, ...parameters }: NonNullable<Registration["parameters"]>) {
+  return parameters;
 }
 
 async function packed(files: readonly OutputFile[]): Promise<Blob> {

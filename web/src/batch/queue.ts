@@ -1,5 +1,6 @@
 // The batch: scans waiting, at work and done. Results are kept compressed, never as live meshes.
 import { computed, signal } from "@preact/signals";
+import type { StartBody } from "../core/edits";
 import { type CoreError, defaultSettings, type Registration, type Settings } from "../core/types";
 import { stem } from "../result/download";
 
@@ -14,6 +15,8 @@ export interface Outcome {
   /** of scan points to the body */
   scan_p95_mm: number | null;
   seconds: number;
+  /** for scans that start from this one; null when failed */
+  start: StartBody | null;
   /** what the command line writes, as a ZIP */
   files: Blob;
 }
@@ -39,6 +42,8 @@ export interface Item {
 export const items = signal<readonly Item[]>([]);
 /** For every scan without settings of its own. */
 export const settingsForAll = signal<Settings>(defaultSettings);
+/** The scan whose registration the others start from. */
+export const startFrom = signal<number | null>(null);
 /** Whether the queue is being worked. */
 export const running = signal(false);
 export const selected = signal<number | null>(null);
@@ -118,6 +123,7 @@ export function remove(id: number): void {
   const item = itemOf(id);
   if (!item || item.status === "working") return;
   if (item.picture) URL.revokeObjectURL(item.picture);
+  if (startFrom.value === id) startFrom.value = null;
   if (selected.value === id) selected.value = null;
   items.value = items.value.filter((each) => each.id !== id);
 }
@@ -136,5 +142,7 @@ export function again(id: number): void {
 
 /** What a scan is registered with. */
 export function settingsOf(item: Item): Settings {
-  return item.settings ?? settingsForAll.value;
+  const settings = item.settings ?? settingsForAll.value;
+  const start = startFrom.value === item.id ? null : (itemOf(startFrom.value)?.outcome?.start ?? null);
+  return start ? { ...settings, init: "file", start } : settings;
 }
