@@ -1,5 +1,6 @@
 // Typed messages between the page and the worker that holds the core.
 import type { Measurements, Section } from "./measurements";
+import type { BodyDescription, BodyParameters, LessonData, LessonSettings, PosedBody } from "./teaching";
 import type { CoreStage, ErrorCode, Findings, OutputFile, ScanData, Settings } from "./types";
 
 export interface CoreInfo {
@@ -26,6 +27,12 @@ export interface Calls {
   profile: { args: { segment: string; count: number }; result: Section[] };
   /** What `vitruvian measure --export format` writes; "measurements": the tables; "all": all of it. */
   measuredFiles: { args: { format: string }; result: OutputFile[] };
+  /** The body model that is loaded. */
+  body: { args: Record<string, never>; result: BodyDescription };
+  /** The body posed by hand; may be asked while something else is worked. */
+  poseBody: { args: { parameters: BodyParameters }; result: PosedBody };
+  /** The fit of the opened scan, whose keypoints are found, again and watched. */
+  lesson: { args: { settings: LessonSettings }; result: LessonData };
   /** Bytes of memory that the core holds. */
   memory: { args: Record<string, never>; result: { heap: number } };
 }

@@ -14,6 +14,7 @@ import * as state from "./state";
 import { ViewPane } from "./ViewPane";
 
 const BatchPage = lazyPart(() => import("../batch/BatchPage").then((m) => m.BatchPage));
+const BodyPage = lazyPart(() => import("../teach/BodyPage").then((m) => m.BodyPage));
 const OpenedNote = lazyPart(() => import("../batch/OpenedNote").then((m) => m.OpenedNote));
 
 /** Elements that use letters and digits themselves. */
@@ -84,6 +85,7 @@ export function App() {
     <>
       <Header />
       {mode.value === "batch" && <BatchPage />}
+      {mode.value === "body" && <BodyPage />}
       {mode.value === "scan" && queue.opened.value !== null && <OpenedNote />}
       <main class={mode.value === "scan" ? "" : "hidden"}>
         <StageRail />
@@ -113,7 +115,8 @@ export function App() {
 /** One scan is opened; several, or a folder, make a batch. */
 async function dropped(transfer: DataTransfer): Promise<void> {
   const file = transfer.files[0];
-  if (mode.value === "scan" && !isPile(transfer)) {
+  if (mode.value !== "batch" && !isPile(transfer)) {
+    if (mode.value === "body") mode.value = "scan";
     if (file) await openFile(file, file.name);
     return;
   }

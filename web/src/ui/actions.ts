@@ -3,6 +3,7 @@ import { batch } from "@preact/signals";
 import { CoreClient } from "../core/client";
 import { isolated, offlineReady } from "../core/isolation";
 import type { Measurements, Section } from "../core/measurements";
+import type { Calls, Kind } from "../core/messages";
 import {
   CoreError,
   type CoreStage,
@@ -152,10 +153,10 @@ export function register(): Promise<void> {
  * Lends the core to other work than the main view's. Unless they are kept, the view's findings are out of date
  * afterwards. @throws what `work` throws, CoreError(internal) when the core is at work.
  */
-export async function borrowCore(
-  work: (client: CoreClient) => Promise<void>,
+export async function borrowCore<T>(
+  work: (client: CoreClient) => Promise<T>,
   findings: "drop" | "keep" = "drop",
-): Promise<void> {
+): Promise<T> {
   if (state.busy.value) throw new CoreError("internal", "the core is at work");
   batch(() => {
     state.busy.value = { stage: "register", since: performance.now() };
@@ -167,7 +168,7 @@ export async function borrowCore(
       scanIsInCore = false;
       keep([]);
     }
-    await work(client);
+    return await work(client);
   } catch (error) {
     // What is left of a core without memory would fail the next scan too.
     if (error instanceof CoreError && error.code === "out_of_memory") client.end();
@@ -179,6 +180,12 @@ export async function borrowCore(
       state.progress.value = null;
     });
   }
+}
+
+/** Asks the core for something that it can tell at any time. @throws CoreError */
+export async function ask<K extends Kind>(kind: K, args: Calls[K]["args"]): Promise<Calls[K]["result"]> {
+  await ensureCore();
+  return client.call(kind, args);
 }
 
 export function cancel(): void {

@@ -1,11 +1,12 @@
 import { signal } from "@preact/signals";
 
 /** What the page is used for. */
-export type Mode = "scan" | "batch";
+export type Mode = "scan" | "batch" | "body";
 
 export const MODES: readonly (readonly [Mode, string, string])[] = [
   ["scan", "One scan", "Register one scan, stage by stage"],
   ["batch", "Batch", "Register many scans one after the other"],
+  ["body", "Body", "The body model itself: shape and joints on sliders"],
 ];
 
 export const mode = signal<Mode>("scan");

@@ -29,6 +29,8 @@ Mesh.prototype.raycast = acceleratedRaycast;
 const SCAN_COLOUR = 0xb9bcc2;
 const BODY_COLOUR = 0xe0a458;
 const SKELETON_COLOUR = 0xb3261e;
+const FROM_MODEL_COLOUR = 0xd2691e;
+const FROM_SCAN_COLOUR = 0x1b7fbd;
 const KEYPOINT_RADIUS_M = 0.014;
 /** Parent of each of the 24 joints, in SMPL's order; the root has none. */
 const PARENTS = [-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19, 20, 21];
@@ -94,6 +96,37 @@ export function skeletonObjects(joints: readonly Vec3[]): (LineSegments | Points
   ];
   for (const part of parts) part.renderOrder = 2;
   return parts;
+}
+
+/** A line for each pair of points (six numbers); the first `ofModel` in another colour than the rest. */
+export function pairObjects(pairs: Float32Array, ofModel: number): LineSegments[] {
+  const parts = [
+    [pairs.subarray(0, 6 * ofModel), FROM_MODEL_COLOUR],
+    [pairs.subarray(6 * ofModel), FROM_SCAN_COLOUR],
+  ] as const;
+  return parts
+    .filter(([points]) => points.length > 0)
+    .map(([points, color]) => {
+      const lines = new LineSegments(
+        positionsOf([...points]),
+        new LineBasicMaterial({ color, depthTest: false, transparent: true }),
+      );
+      lines.renderOrder = 2;
+      return lines;
+    });
+}
+
+/** Gives a body other positions of its vertices. @returns false when it has not as many */
+export function moveBody(body: Surface, positions: Float32Array): boolean {
+  const attribute = body.geometry.getAttribute("position") as BufferAttribute;
+  if (attribute.array.length !== positions.length) return false;
+  attribute.array.set(positions);
+  attribute.needsUpdate = true;
+  body.geometry.computeVertexNormals();
+  body.geometry.boundsTree?.refit();
+  body.geometry.computeBoundingSphere();
+  body.geometry.computeBoundingBox();
+  return true;
 }
 
 /** Removes everything from a group, and from the graphics card. */

@@ -22,7 +22,9 @@ import {
   bodyObject,
   clear,
   keypointObject,
+  moveBody,
   paintErrors,
+  pairObjects,
   type Surface,
   scanObject,
   skeletonObjects,
@@ -41,6 +43,7 @@ export class Viewer {
   private readonly bodyRoot = new Group();
   private readonly keypointRoot = new Group();
   private readonly skeletonRoot = new Group();
+  private readonly pairRoot = new Group();
   private readonly axesRoot = new Group();
   private readonly curveRoot = new Group();
   private readonly grid = new GridHelper(4, 16);
@@ -67,6 +70,7 @@ export class Viewer {
       this.bodyRoot,
       this.keypointRoot,
       this.skeletonRoot,
+      this.pairRoot,
       this.axesRoot,
       this.curveRoot,
       this.grid,
@@ -147,6 +151,30 @@ export class Viewer {
     this.request(true);
   }
 
+  /** Moves the body's vertices: cheaper than another body of the same faces. @returns whether there was none yet */
+  moveBody(mesh: MeshData): boolean {
+    const body = this.bodyRoot.children[0] as Surface | undefined;
+    const isFirst = !body || !moveBody(body, mesh.positions);
+    if (isFirst) this.setBody(mesh, null);
+    this.request();
+    return isFirst;
+  }
+
+  /** Lines between points that are matched: pairs of six numbers, body frame. */
+  setPairs(pairs: Float32Array, ofModel: number): void {
+    clear(this.pairRoot);
+    for (const part of pairObjects(pairs, ofModel)) this.pairRoot.add(part);
+    this.request(true);
+  }
+
+  /** What the view shows now, as a PNG. */
+  picture(): Promise<Blob> {
+    this.paintPanes();
+    return new Promise((resolve, reject) =>
+      this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))), "image/png"),
+    );
+  }
+
   /** Shows the body's directions beside the aligned scan. */
   setAxes(shown: boolean): void {
     disposeAxes(this.axesRoot);
@@ -220,7 +248,8 @@ export class Viewer {
   dispose(): void {
     this.observer.disconnect();
     this.viewpoint.controls.dispose();
-    for (const root of [this.scanRoot, this.bodyRoot, this.keypointRoot, this.skeletonRoot]) clear(root);
+    const { scanRoot, bodyRoot, keypointRoot, skeletonRoot, pairRoot } = this;
+    for (const root of [scanRoot, bodyRoot, keypointRoot, skeletonRoot, pairRoot]) clear(root);
     disposeAxes(this.axesRoot);
     disposeCurve(this.curveRoot);
     this.graphics.dispose();

@@ -52,6 +52,10 @@ interface Module {
   _vitruvian_measurements_report(): Text;
   _vitruvian_profile_report(segment: Text, count: number): Text;
   _vitruvian_measured_files_report(format: Text): Text;
+  _vitruvian_body_report(): Text;
+  _vitruvian_pose_body(parameters: Text): Text;
+  _vitruvian_begin_lesson(settings: Text): number;
+  _vitruvian_lesson_report(): Text;
 }
 
 /** Files of ModelPart in wasm/session.h, in its order. */
@@ -203,6 +207,23 @@ export class Core {
   private listed(report: Text): OutputFile[] {
     const { files } = this.json<{ files: { name: string; data: ArrayReference }[] }>(report);
     return files.map(({ name, data: [address, size] }) => ({ name, data: this.bytes(address, size) }));
+  }
+
+  /** What there is to move on the body. @throws CoreError */
+  body<T>(): T {
+    return this.json<T>(this.module._vitruvian_body_report());
+  }
+
+  poseBody<T>(parameters: object): T {
+    return this.withText(JSON.stringify(parameters), (text) =>
+      this.json<T>(this.module._vitruvian_pose_body(text)),
+    );
+  }
+
+  async lesson<T>(settings: object): Promise<T> {
+    this.withText(JSON.stringify(settings), (text) => this.check(this.module._vitruvian_begin_lesson(text)));
+    await this.finished();
+    return this.json<T>(this.module._vitruvian_lesson_report());
   }
 
   private async answer({ network, inputs }: NetworkRequest, runNetwork: RunNetwork): Promise<void> {

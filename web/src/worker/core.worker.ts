@@ -3,6 +3,7 @@ import type { Calls, Kind, Reply, Request } from "../core/messages";
 import { CoreError, type Findings, type ScanData } from "../core/types";
 import { Core } from "./core";
 import type { Networks } from "./networks";
+import { bodyOf, lessonOf, poseBody } from "./teaching";
 
 const scope = self as unknown as {
   postMessage(message: Reply, transfer?: Transferable[]): void;
@@ -122,6 +123,19 @@ const handlers: Handlers = {
 
   async measuredFiles({ format }) {
     return theCore().measuredFiles(format);
+  },
+
+  async body() {
+    await prepared();
+    return bodyOf(theCore());
+  },
+
+  async poseBody({ parameters }) {
+    return poseBody(theCore(), parameters);
+  },
+
+  async lesson({ settings }) {
+    return lessonOf(theCore(), settings);
   },
 
   async memory() {
