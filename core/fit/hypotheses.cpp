@@ -43,6 +43,11 @@ bool is_hopeless(const FitScore& score, const HypothesisSettings& settings) {
          (is_bare(score, settings) && is_unexplained(score, settings));
 }
 
+/// Misfit of a hand or foot beyond which it may be turned, m.
+double extremity_limit(const FitScore& score, const HypothesisSettings& settings) {
+  return score.typical * (is_bare(score, settings) ? settings.bad_bare_extremity : settings.bad_extremity);
+}
+
 constexpr std::array kShoulders = {11}, kElbows = {13}, kHips = {23}, kKnees = {25};
 constexpr std::array kHands = {15, 17, 19}, kFeet = {27, 29, 31};
 
@@ -176,7 +181,7 @@ void judge(const FitModel& model, const ScanTarget& scan, const HypothesisSettin
   posed.update(model, result.state);
   for (int limb = 0; limb < 4; ++limb)
     result.misfit_limbs[limb] =
-        extremity_misfit(model, scan, posed, limb) > settings.bad_extremity * result.score.typical;
+        extremity_misfit(model, scan, posed, limb) > extremity_limit(result.score, settings);
   result.bad = is_hopeless(result.score, settings);
   result.limb_away = is_unexplained_at_large(result.score, settings);
 }
@@ -198,14 +203,16 @@ int turn_extremities(const FitModel& model, const ScanTarget& scan, const Hypoth
   int turned = 0;
   while (budget > 0 && turned < 4) {
     std::vector<BodyState> candidates =
-        turned_extremities(model, scan, fit.state, settings.bad_extremity * fit.score.typical);
+        turned_extremities(model, scan, fit.state, extremity_limit(fit.score, settings));
     if (static_cast<int>(candidates.size()) > budget) candidates.resize(budget);
     if (candidates.empty()) break;
     budget -= static_cast<int>(candidates.size());
     fit.score = score_fit(model, scan, fit.state, kCoarseScoreSamples);
     const double before = fit.score.total();
+    // A hand is a hundredth of the surface, and what shoes gain by turning is chance.
+    const double gain = is_bare(fit.score, settings) ? settings.least_turn_gain : settings.least_gain;
     for (Fit& other : refit(model, scan, candidates, FitSchedule::after_limb_search(), execution)) {
-      if (other.score.total() < fit.score.total() - settings.least_gain) fit = std::move(other);
+      if (other.score.total() < fit.score.total() - gain) fit = std::move(other);
     }
     if (fit.score.total() == before) break;
     ++turned;

@@ -27,11 +27,13 @@ struct HypothesisSettings {
   /// A fit that is still beyond this, or beyond bad_model_to_scan_p95, is started anew; m. Between the two
   /// lie clothes and hair: scan points without a counterpart on a body that is otherwise explained.
   double hopeless_scan_to_model_p95 = 0.09;
-  /// Times FitScore::typical: extremity_misfit() beyond which a hand or foot is tried back to front.
-  double bad_extremity = 1.1;
+  /// Times FitScore::typical: extremity_misfit() beyond which a hand or foot is tried back to front. Right
+  /// ones of bare bodies reach 0.7, shoes 1.
+  double bad_extremity = 1.1, bad_bare_extremity = 0.8;
   int repair_rounds = 3;
   int candidates_per_limb = 2;
   double least_gain = 0.001;              ///< m of FitScore::total()
+  double least_turn_gain = 0.0001;        ///< the same for a hand or foot of a bare body
   int refit_budget = 48;                  ///< coarse surface fits beyond the first
   int small_part_budget = 8;              ///< of it, for other starts when no whole limb is away
   double same_pose = 0.06;                ///< m, largest joint distance at which two starts count as one

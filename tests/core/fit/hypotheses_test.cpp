@@ -168,7 +168,7 @@ TEST(Extremities, OnlyTheTurnedOneMisfits) {
     const BodyState turned = with_turned(truth, limb);
     PosedModel posed;
     posed.update(model, turned);
-    const double limit = HypothesisSettings().bad_extremity * score_fit(model, scan, turned).typical;
+    const double limit = HypothesisSettings().bad_bare_extremity * score_fit(model, scan, turned).typical;
     for (int other = 0; other < 4; ++other) {
       const double misfit = extremity_misfit(model, scan, posed, other);
       if (other == limb) {
