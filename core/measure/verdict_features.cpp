@@ -19,13 +19,19 @@ constexpr float kUnexplainedDistance = 0.050f;
 // second pair lies beyond every right fit measured.
 constexpr double kDoubtfulModelToScan = 25, kFailedModelToScan = 60;
 constexpr double kDoubtfulScanToModel = 45, kFailedScanToModel = 150;
-// Right fits of bare bodies stay under 3.0 % opposed normals, of clothed ones under 12 %; residuals tell
-// which it is.
-constexpr double kBareScanToModel = 26, kBareOpposed = 0.033, kClothedOpposed = 0.12;
+// Of bare bodies no right fit measured goes beyond 6 mm from model to scan and 8 mm back.
+constexpr double kBareModelToScan = 15, kBareScanToModel = 20;
+// Right fits of bare bodies stay under 3.0 % opposed normals, of clothed ones under 12 %.
+constexpr double kBareOpposed = 0.033, kClothedOpposed = 0.12;
+// mm; bare bodies stay below 17.5, clothed ones begin at 22. The second tells when the first is not known.
+constexpr double kBareTypical = 19.5, kBareScanToModelAlone = 26;
 constexpr double kLargestUnseen = 0.05;  // mean share over the segments
 constexpr double kDoubtfulUnexplained = 0.05;
 constexpr double kDoubtfulJointExcess = 0.35;   // rad, 20 degrees beyond the limit
 constexpr double kDoubtfulDisagreement = 0.20;  // m, several times the detector's own error
+// Every right fit of a bare body stays below it in both directions, no wrong one measured does: the detector,
+// which a hand behind an arm misleads by 30 cm, has nothing to say against such a fit. mm.
+constexpr double kSnug = 8;
 constexpr double kDoubtfulInside = 0.04;
 constexpr double kLowStature = 1.20, kHighStature = 2.20;  // m, outside of it the unit is in doubt
 
@@ -51,12 +57,29 @@ std::string listed(const std::vector<std::string>& names) {
   return result;
 }
 
+bool is_bare(const VerdictFeatures& f) {
+  return f.typical_mm > 0 ? f.typical_mm < kBareTypical : f.scan_to_model_p95_mm < kBareScanToModelAlone;
+}
+
 /// Share of opposed normals that speaks against a fit. Of thin parts scanned from one side alone the other
 /// side is near and faces away.
 double opposed_limit(const VerdictFeatures& f) {
   const double unseen = std::accumulate(f.unseen_share.begin(), f.unseen_share.end(), 0.0) / 24;
-  return f.scan_to_model_p95_mm < kBareScanToModel && unseen < kLargestUnseen ? kBareOpposed
-                                                                              : kClothedOpposed;
+  return is_bare(f) && unseen < kLargestUnseen ? kBareOpposed : kClothedOpposed;
+}
+
+double scan_to_model_limit(const VerdictFeatures& f) {
+  return f.typical_mm > 0 && is_bare(f) ? kBareScanToModel : kDoubtfulScanToModel;
+}
+
+double model_to_scan_limit(const VerdictFeatures& f) {
+  return f.typical_mm > 0 && is_bare(f) ? kBareModelToScan : kDoubtfulModelToScan;
+}
+
+/// Whether scan and body lie on each other everywhere, their normals too.
+bool is_snug(const VerdictFeatures& f) {
+  return f.model_to_scan_p95_mm < kSnug && f.scan_to_model_p95_mm < kSnug &&
+         f.opposed_share < opposed_limit(f);
 }
 
 /// Collects findings; the worst status wins.
@@ -76,7 +99,7 @@ class Findings {
 };
 
 void judge_residuals(const VerdictFeatures& f, Findings& findings) {
-  if (f.scan_to_model_p95_mm > kDoubtfulScanToModel) {
+  if (f.scan_to_model_p95_mm > scan_to_model_limit(f)) {
     findings.add(
         f.scan_to_model_p95_mm > kFailedScanToModel ? VerdictStatus::failed : VerdictStatus::doubtful,
         text("parts of the scan are not explained by the body: 5 %% of its points lie more than %.0f mm away "
@@ -87,7 +110,7 @@ void judge_residuals(const VerdictFeatures& f, Findings& findings) {
         VerdictStatus::doubtful,
         text("%.0f %% of the scan's points lie more than 50 mm from the body", 100 * f.unexplained_share));
   }
-  if (f.model_to_scan_p95_mm > kDoubtfulModelToScan) {
+  if (f.model_to_scan_p95_mm > model_to_scan_limit(f)) {
     findings.add(
         f.model_to_scan_p95_mm > kFailedModelToScan ? VerdictStatus::failed : VerdictStatus::doubtful,
         text("parts of the body lie where the scan has no surface: 5 %% of it is more than %.0f mm away",
@@ -137,7 +160,7 @@ void judge_joints(const VerdictFeatures& f, Findings& findings) {
     findings.add(VerdictStatus::doubtful, "bent further than bodies usually do: " + listed(beyond));
   }
   for (const JointFinding& joint : f.keypoint_disagreement_m) {
-    if (joint.value > kDoubtfulDisagreement) {
+    if (joint.value > kDoubtfulDisagreement && !is_snug(f)) {
       away.push_back(plain_name(joint.joint) + text(" (%.0f mm)", 1e3 * joint.value));
     }
   }
@@ -156,13 +179,15 @@ double trust(double value, double doubtful) { return 1 / (1 + std::pow(std::max(
 
 double confidence_of(const VerdictFeatures& f) {
   double confidence =
-      trust(f.scan_to_model_p95_mm, kDoubtfulScanToModel) *
-      trust(f.model_to_scan_p95_mm, kDoubtfulModelToScan) * trust(f.opposed_share, opposed_limit(f)) *
+      trust(f.scan_to_model_p95_mm, scan_to_model_limit(f)) *
+      trust(f.model_to_scan_p95_mm, model_to_scan_limit(f)) * trust(f.opposed_share, opposed_limit(f)) *
       trust(f.unexplained_share, kDoubtfulUnexplained) * trust(f.inside_share, kDoubtfulInside);
   double excess = 0, disagreement = 0, seen = 0;
   for (const JointFinding& joint : f.joint_limit_excess_rad) excess = std::max(excess, joint.value);
-  for (const JointFinding& joint : f.keypoint_disagreement_m)
-    disagreement = std::max(disagreement, joint.value);
+  if (!is_snug(f)) {
+    for (const JointFinding& joint : f.keypoint_disagreement_m)
+      disagreement = std::max(disagreement, joint.value);
+  }
   for (std::size_t s = 0; s < f.observed_share.size(); ++s)
     seen += std::min(1.0, (f.observed_share[s] + f.unseen_share[s]) / kObservedShare) / 24;
   if (!f.misfit_parts.empty()) confidence *= 0.5;

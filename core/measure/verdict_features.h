@@ -24,6 +24,8 @@ struct VerdictFeatures {
   /// segments that were scanned.
   double model_to_scan_p95_mm = 0, model_to_scan_mean_mm = 0;
   double scan_to_model_p95_mm = 0, scan_to_model_mean_mm = 0;
+  /// FitScore::typical of the fit, mm; 0 when it is not known. Tells bare bodies from clothed ones.
+  double typical_mm = 0;
   double unexplained_share = 0;  ///< share of scan points farther than 50 mm from the model
   double opposed_share = 0;      ///< share of near pairs with normals against each other
   std::array<double, 24> observed_share = [] {

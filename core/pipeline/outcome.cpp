@@ -52,7 +52,16 @@ std::vector<JointFinding> keypoint_disagreement(const std::vector<LandmarkTarget
   std::vector<JointFinding> findings;
   for (const LandmarkTarget& l : targets) {
     if (l.weight < kSureKeypoint) continue;
-    findings.push_back({body.joint_names[l.joint], (landmark_position(skeleton, l) - l.target).norm()});
+    const double distance = (landmark_position(skeleton, l) - l.target).norm();
+    const std::string& name = body.joint_names[l.joint];
+    // A wrist has landmarks on the fingers too: the worst speaks for it.
+    const auto known = std::find_if(findings.begin(), findings.end(),
+                                    [&](const JointFinding& finding) { return finding.joint == name; });
+    if (known == findings.end()) {
+      findings.push_back({name, distance});
+    } else {
+      known->value = std::max(known->value, distance);
+    }
   }
   return findings;
 }
@@ -145,6 +154,7 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
   const Skeleton skeleton = pose_skeleton(body, state);
   VerdictFeatures features = features_from(measured);
   leave_out_unseen(unseen_vertices(body, vertices, samples), body.segment, measured, features);
+  features.typical_mm = 1e3 * input.fit.score.typical;
   features.misfit_parts = misfit_parts(input.fit);
   features.joint_limit_excess_rad = limit_excess(body, input.models.prior, state);
   features.keypoint_disagreement_m = keypoint_disagreement(input.targets, body, skeleton);

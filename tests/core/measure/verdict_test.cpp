@@ -102,6 +102,34 @@ TEST(Verdict, JointsAreNamed) {
   EXPECT_TRUE(mentions(verdict, "left wrist (310 mm)"));
 }
 
+TEST(Verdict, ADetectorDoesNotOutweighASnugFit) {
+  VerdictFeatures f = good();
+  f.keypoint_disagreement_m = {{"left_wrist", 0.31}};
+  EXPECT_EQ(judge(f).status, VerdictStatus::doubtful);
+  f.model_to_scan_p95_mm = 3;
+  EXPECT_EQ(judge(f).status, VerdictStatus::doubtful) << "one direction alone tells little";
+  f.scan_to_model_p95_mm = 3;
+  EXPECT_EQ(judge(f).status, VerdictStatus::ok);
+  EXPECT_GT(judge(f).confidence, 0.8);
+  f.opposed_share = 0.06;
+  EXPECT_EQ(judge(f).status, VerdictStatus::doubtful) << "limbs may be exchanged";
+}
+
+TEST(Verdict, BareBodiesAreHeldToMore) {
+  VerdictFeatures clothed = good();
+  clothed.typical_mm = 24;
+  clothed.scan_to_model_p95_mm = 32;
+  clothed.opposed_share = 0.06;
+  EXPECT_EQ(judge(clothed).status, VerdictStatus::ok);
+  VerdictFeatures bare = clothed;
+  bare.typical_mm = 16;
+  const Verdict verdict = judge(bare);
+  EXPECT_EQ(verdict.status, VerdictStatus::doubtful);
+  EXPECT_TRUE(mentions(verdict, "not explained"));
+  EXPECT_TRUE(mentions(verdict, "exchanged"));
+  EXPECT_LT(verdict.confidence, judge(clothed).confidence);
+}
+
 TEST(Verdict, NotesAndStatureAreTold) {
   VerdictFeatures f = good();
   f.notes = {"the unit could be cm or in; cm was taken"};
