@@ -28,13 +28,15 @@ export function BodyPage() {
     <main class="learn body">
       <Scene
         label="Body model"
-        draw={(viewer) => {
-          viewer.setOptions(PLAIN_VIEW, 10);
-          if (!posed.value || !body.value) return;
-          const isFirst = viewer.moveBody({ positions: posed.value.positions, indices: body.value.faces });
-          if (isFirst) viewer.fit();
-          viewer.setSkeleton(posed.value.joints);
-        }}
+        draws={[
+          (viewer) => {
+            viewer.setOptions(PLAIN_VIEW, 10);
+            if (!posed.value || !body.value) return;
+            const isFirst = viewer.moveBody({ positions: posed.value.positions, indices: body.value.faces });
+            if (isFirst) viewer.fit();
+            viewer.setSkeleton(posed.value.joints);
+          },
+        ]}
       >
         {posed.value && (
           <p class="probe" role="status">

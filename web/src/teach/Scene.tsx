@@ -1,4 +1,4 @@
-import { useSignal, useSignalEffect } from "@preact/signals";
+import { effect, useSignal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { save } from "../result/download";
@@ -21,13 +21,13 @@ export const PLAIN_VIEW: ViewOptions = {
 
 interface Props {
   label: string;
-  /** Called within an effect: what it reads of signals draws it anew. */
-  draw: (viewer: Viewer) => void;
+  /** Each an effect of its own: what it reads of signals draws it anew. */
+  draws: readonly ((viewer: Viewer) => void)[];
   children?: ComponentChildren;
 }
 
 /** A 3D view of its own that draws what it is told. */
-export function Scene({ label, draw, children }: Props) {
+export function Scene({ label, draws, children }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const viewer = useSignal<Viewer | null>(null);
   const failed = useSignal("");
@@ -47,11 +47,17 @@ export function Scene({ label, draw, children }: Props) {
       viewer.peek()?.dispose();
     };
   }, [viewer, failed]);
-  useSignalEffect(() => {
-    if (!viewer.value) return;
-    viewer.value.setDark(isDark.value);
-    draw(viewer.value);
-  });
+  const first = useRef(draws);
+  useEffect(() => {
+    const view = viewer.value;
+    if (!view) return;
+    const stops = [(each: Viewer) => each.setDark(isDark.value), ...first.current].map((draw) =>
+      effect(() => draw(view)),
+    );
+    return () => {
+      for (const stop of stops) stop();
+    };
+  }, [viewer.value]);
   return (
     <section class="view" aria-label={label}>
       <canvas

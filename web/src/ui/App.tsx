@@ -14,6 +14,7 @@ import * as state from "./state";
 import { ViewPane } from "./ViewPane";
 
 const BatchPage = lazyPart(() => import("../batch/BatchPage").then((m) => m.BatchPage));
+const LearnPage = lazyPart(() => import("../teach/LearnPage").then((m) => m.LearnPage));
 const BodyPage = lazyPart(() => import("../teach/BodyPage").then((m) => m.BodyPage));
 const OpenedNote = lazyPart(() => import("../batch/OpenedNote").then((m) => m.OpenedNote));
 
@@ -85,6 +86,7 @@ export function App() {
     <>
       <Header />
       {mode.value === "batch" && <BatchPage />}
+      {mode.value === "learn" && <LearnPage />}
       {mode.value === "body" && <BodyPage />}
       {mode.value === "scan" && queue.opened.value !== null && <OpenedNote />}
       <main class={mode.value === "scan" ? "" : "hidden"}>

@@ -29,7 +29,7 @@ Mesh.prototype.raycast = acceleratedRaycast;
 const SCAN_COLOUR = 0xb9bcc2;
 const BODY_COLOUR = 0xe0a458;
 const SKELETON_COLOUR = 0xb3261e;
-const FROM_MODEL_COLOUR = 0xd2691e;
+const FROM_MODEL_COLOUR = 0xc2185b;
 const FROM_SCAN_COLOUR = 0x1b7fbd;
 const KEYPOINT_RADIUS_M = 0.014;
 /** Parent of each of the 24 joints, in SMPL's order; the root has none. */

@@ -99,7 +99,7 @@ function bodySquare({ width, height, landmarks }: ViewData): { left: number; top
   return { left: Math.round((left + right - size) / 2), top: Math.round((top + bottom - size) / 2), size };
 }
 
-function ViewPicture({ data, label }: { data: ViewData; label: string }) {
+export function ViewPicture({ data, label }: { data: ViewData; label: string }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const { left, top, size } = bodySquare(data);
   useEffect(() => {
