@@ -84,6 +84,8 @@ class PickleFile {
  private:
   friend class PickleValue;
   using Id = std::uint32_t;
+  /// Far above what a model file holds (some thousands), far below what would hurt.
+  static constexpr std::size_t kMostValues = 1'000'000, kMostReferences = 8'000'000, kMostMarks = 100'000;
 
   struct Node {
     PickleKind kind = PickleKind::none;
