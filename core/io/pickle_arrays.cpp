@@ -12,8 +12,9 @@
 namespace vitruvian {
 namespace {
 
-/// Chumpy objects refer to each other; a file that refers to itself must come to an end.
-constexpr int kDeepest = 16;
+/// Chumpy objects and sparse matrices refer to other arrays, in real files two deep; a file that refers to
+/// itself must come to an end, and soon, for each may name three.
+constexpr int kDeepest = 4;
 constexpr std::size_t kMostAxes = 32;
 constexpr double kMostElements = 1e9;
 constexpr std::size_t kMostDenseElements = std::size_t{1} << 26;
@@ -157,10 +158,10 @@ bool is_sparse(const PickleValue& value) {
 }
 
 std::vector<std::uint32_t> indices_of(const PickleValue& value, std::string_view key, std::size_t below,
-                                      const std::string& name) {
+                                      const std::string& name, int depth) {
   const auto found = value.find(key);
   if (!found) bad(name, "a sparse matrix has no " + std::string(key));
-  const NumericArray array = read_array(*found, name, 1);
+  const NumericArray array = read_array(*found, name, depth + 1);
   std::vector<std::uint32_t> indices;
   indices.reserve(array.values.size());
   for (const double index : array.values) {
@@ -183,7 +184,7 @@ std::vector<std::uint32_t> unfolded(const std::vector<std::uint32_t>& begins, st
   return line;
 }
 
-SparseMatrix read_sparse(const PickleValue& value, const std::string& name) {
+SparseMatrix read_sparse(const PickleValue& value, const std::string& name, int depth) {
   const std::string kind = value.class_name();
   auto shape = value.find("_shape");
   if (!shape) shape = value.find("shape");
@@ -194,21 +195,21 @@ SparseMatrix read_sparse(const PickleValue& value, const std::string& name) {
   SparseMatrix matrix;
   matrix.rows = extents[0];
   matrix.columns = extents[1];
-  matrix.value = read_array(*data, name, 1).values;
+  matrix.value = read_array(*data, name, depth + 1).values;
   const std::size_t entries = matrix.value.size();
   const bool by_column = kind.find(".csc_") != std::string::npos,
              by_row = kind.find(".csr_") != std::string::npos;
   if (by_column || by_row) {
     std::vector<std::uint32_t> inner =
-        indices_of(value, "indices", by_column ? matrix.rows : matrix.columns, name);
-    std::vector<std::uint32_t> outer = unfolded(indices_of(value, "indptr", entries + 1, name), entries,
-                                                by_column ? matrix.columns : matrix.rows, name);
+        indices_of(value, "indices", by_column ? matrix.rows : matrix.columns, name, depth);
+    std::vector<std::uint32_t> outer = unfolded(indices_of(value, "indptr", entries + 1, name, depth),
+                                                entries, by_column ? matrix.columns : matrix.rows, name);
     if (by_column) std::swap(inner, outer);
     matrix.row = std::move(outer);
     matrix.column = std::move(inner);
   } else if (kind.find(".coo_") != std::string::npos) {
-    matrix.row = indices_of(value, "row", matrix.rows, name);
-    matrix.column = indices_of(value, "col", matrix.columns, name);
+    matrix.row = indices_of(value, "row", matrix.rows, name, depth);
+    matrix.column = indices_of(value, "col", matrix.columns, name, depth);
   } else {
     unsupported(value, name);
   }
@@ -237,7 +238,7 @@ NumericArray read_array(const PickleValue& value, const std::string& name, int d
   if (is_numpy(made_by, "_reconstruct") || made_by == "numpy.ndarray") return reconstructed(value, name);
   if (is_numpy(made_by, "_frombuffer")) return from_buffer(value, name);
   if (is_numpy(made_by, "scalar")) return scalar(value, name);
-  if (is_sparse(value)) return dense(read_sparse(value, name), name);
+  if (is_sparse(value)) return dense(read_sparse(value, name, depth), name);
   if (made_by.compare(0, 7, "chumpy.") == 0) {
     if (value.find("idxs")) return selected(value, name, depth);
     if (const auto array = value.find("x")) return read_array(*array, name, depth + 1);
@@ -266,7 +267,7 @@ SparseMatrix sparse_from_dense(const NumericArray& array, const std::string& nam
 }
 
 SparseMatrix sparse_matrix(const PickleValue& value, const std::string& name) {
-  if (value.kind() == PickleKind::object && is_sparse(value)) return read_sparse(value, name);
+  if (value.kind() == PickleKind::object && is_sparse(value)) return read_sparse(value, name, 0);
   return sparse_from_dense(numeric_array(value, name), name);
 }
 

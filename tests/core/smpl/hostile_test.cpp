@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <filesystem>
 
 #include "base/random.h"
 #include "core/smpl/smpl_fixtures.h"
@@ -65,6 +66,17 @@ TEST(HostileModels, MutationsAreReadOrRefused) {
     for (int round = 0; round < rounds; ++round) refused += !fuzz::read_any_model(mutated(whole, random));
     EXPECT_GT(refused, rounds / 4) << name << ", seed " << seed;
   }
+}
+
+/// Files that once brought the readers down, by fuzzing (tests/fuzz) or by thought.
+TEST(HostileModels, FormerCrashersAreTypedErrors) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(VITRUVIAN_SOURCE_DIR "/tests/fuzz/crashers")) {
+    const FileBytes file(entry.path().string());
+    EXPECT_FALSE(fuzz::read_any_model(file.bytes())) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 2);
 }
 
 TEST(HostileModels, ProtocolsZeroToFiveSayTheSame) {
