@@ -34,6 +34,12 @@ def by_segment(table, key="mean_mm"):
     return {row["segment"]: row[key] for row in table}
 
 
+def by_segment_mean(rows, key, name):
+    """Mean of one segment's values in rows[...][key], those that were not seen left out; NaN when none was."""
+    values = [row[key][name] for row in rows if row[key][name] is not None]
+    return float(np.mean(values)) if values else math.nan
+
+
 def true_surface(surface, scan, registered, unit, segments, observed):
     """Correspondence error by segment (registered template vertex to where that vertex truly is), and the sampling floor
     of the paper's point measure (true template vertex to the nearest scan point), both means in mm. segments (V)."""
@@ -74,7 +80,8 @@ def run(case, options, segments):
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=error)
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
-    row.update(exit=process.returncode, seconds=time.monotonic() - began, memory_mb=usage.ru_maxrss / 1024)
+    row.update(exit=process.returncode, seconds=time.monotonic() - began, cpu_seconds=usage.ru_utime + usage.ru_stime,
+               memory_mb=usage.ru_maxrss / 1024)
     try:
         result = json.loads((results / scan.stem / "registration.json").read_text())
         truth = json.loads(truth_file.read_text())
