@@ -65,7 +65,7 @@ void add_method_options(CLI::App& command, RegisterArguments& a, Pending& pendin
       ->type_name("2|8");
   command
       .add_option("--min-visibility", a.settings.min_visibility,
-                  "landmarks seen less surely are not used, 0 to 1")
+                  "landmarks seen less surely are not used, 0 to 1 (default: 0, as published 0.25)")
       ->check(CLI::Range(0.0, 1.0).description(""))
       ->type_name("F");
   command.add_option("--init", pending.init, "start of the fit; FILE is an earlier registration.json")
@@ -156,6 +156,7 @@ void settle_register(const CLI::App& command, const Pending& pending, RegisterAr
   };
   stage("--align", &Settings::align);
   stage("--views", &Settings::views);
+  stage("--min-visibility", &Settings::min_visibility);
   stage("--init", &Settings::init);
   stage("--solver", &Settings::solver);
   stage("--iterations", &Settings::iterations);

@@ -84,6 +84,7 @@ Settings settings_of(Method method) {
   if (method == Method::ours) return settings;
   settings.align = AlignMode::pca;
   settings.views = 2;
+  settings.min_visibility = kPaperMinVisibility;
   settings.init = InitMode::keypoints;
   settings.solver = SolverKind::paper;
   if (method == Method::paper_cpu) {

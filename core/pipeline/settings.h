@@ -51,6 +51,10 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
+/// Section 3.1.3's threshold, for which the paper gives no number: half of the least combined visibility that
+/// a landmark of the default body's rest pose has in the two views (0.50, a hand that one view hides).
+constexpr double kPaperMinVisibility = 0.25;
+
 /// The settings that a method stands for; single stages are overridden in them.
 Settings settings_of(Method method);
 

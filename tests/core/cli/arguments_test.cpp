@@ -108,6 +108,7 @@ TEST(Arguments, MethodsStandForTheirStages) {
   EXPECT_EQ(paper.adam_iterations, 6000);
   EXPECT_FALSE(paper.one_directional);
   EXPECT_EQ(paper.chunk, 0);
+  EXPECT_EQ(paper.min_visibility, 0.25);
   const Settings cpu = registering({"--method", "paper-cpu"}).settings;
   EXPECT_EQ(cpu.iterations, 2000);
   EXPECT_EQ(cpu.adam_iterations, 100);
