@@ -84,6 +84,8 @@ void add_measure_options(CLI::App& command, MeasureArguments& a) {
       ->type_name("DIR");
   command.add_option("--model", a.model_file, "body model that the registration was made with")
       ->type_name("FILE");
+  command.add_option("--dmpl", a.dmpl_file, "soft-tissue model that the registration was made with")
+      ->type_name("FILE");
   command.add_option("--scan", a.scan_file, "the registered scan")->type_name("FILE");
   command
       .add_option_function<std::vector<std::string>>(

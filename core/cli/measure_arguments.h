@@ -22,6 +22,7 @@ struct MeasureArguments {
   std::string registration_file;
   std::string out;         ///< empty: JSON to stdout
   std::string model_file;  ///< empty: the default body
+  std::string dmpl_file;   ///< empty: none
   std::string scan_file;   ///< empty: none
   std::vector<SectionRequest> sections;
   std::vector<ProfileRequest> profiles;

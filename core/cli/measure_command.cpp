@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/sha256.h"
+#include "cli/model_loading.h"
 #include "cli/paths.h"
 #include "geometry/mesh.h"
 #include "io/file.h"
@@ -17,11 +18,17 @@ namespace vitruvian {
 namespace {
 
 void check_model(const Registration& registration, const BodyModel& body, const MeasureArguments& arguments) {
-  const BodyParameters& parameters = *registration.parameters;
-  if (registration.model.sha256 == body.sha256 && parameters.pose.cols() == body.joint_count() &&
-      parameters.betas.size() <= body.beta_count()) {
-    return;
+  const std::optional<FileInfo>& tissue = registration.model.dmpl;
+  if (tissue && arguments.dmpl_file.empty()) {
+    throw Error(ErrorCode::usage, arguments.registration_file + ": was made with the soft tissue " +
+                                      tissue->file + ": give it too, --dmpl FILE");
   }
+  if (tissue && tissue->sha256 != file_info(arguments.dmpl_file).sha256) {
+    throw Error(ErrorCode::usage, arguments.dmpl_file + ": is not the soft tissue of " +
+                                      arguments.registration_file + " (" + tissue->file +
+                                      "): its sha256 differs");
+  }
+  if (registration.model.sha256 == body.sha256) return;
   throw Error(ErrorCode::usage,
               arguments.registration_file + ": was made with the model " + registration.model.name +
                   " (sha256 " + registration.model.sha256.substr(0, 12) + "...), this one is " + body.name +
@@ -101,7 +108,7 @@ ExitStatus run_measure(const MeasureArguments& arguments, const CliContext& cont
                   << ": the registration failed and has no body to measure\n";
     return ExitStatus::not_all_ok;
   }
-  const BodyModel body = context.open_body(arguments.model_file);
+  const BodyModel body = context.open_body(arguments.model_file, arguments.dmpl_file);
   check_model(registration, body, arguments);
 
   std::optional<MeasuredRegistration> measured;

@@ -1,5 +1,7 @@
 #include "cli/model_loading.h"
 
+#include <filesystem>
+
 #include "base/sha256.h"
 #include "cli/paths.h"
 #include "io/file.h"
@@ -27,6 +29,10 @@ PosePrior with_users_prior(PosePrior bundled, const std::string& path) {
 
 }  // namespace
 
+FileInfo file_info(const std::string& path) {
+  return {std::filesystem::path(path).filename().string(), to_hex(sha256(FileBytes(path).bytes()))};
+}
+
 BodyModel load_body_model(const ModelFiles& files, const std::vector<std::string>& data_folders) {
   const std::string path = files.model.empty() ? find_data_file(data_folders, "body.vbm") : files.model;
   const FileBytes file(path);
@@ -46,6 +52,8 @@ Models load_models(const ModelFiles& files, const std::vector<std::string>& data
                    const Execution& execution) {
   Models models;
   models.body = load_body_model(files, data_folders);
+  if (!files.dmpl.empty()) models.dmpl = file_info(files.dmpl);
+  if (!files.prior.empty()) models.users_prior = file_info(files.prior);
   const PosePrior bundled = read_prior(find_data_file(data_folders, "pose_prior.vpp"));
   const PosePrior chosen = files.prior.empty() ? bundled : with_users_prior(bundled, files.prior);
   models.prior = prior_for_skeleton(chosen, models.body);

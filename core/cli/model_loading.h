@@ -23,6 +23,10 @@ struct ModelFiles {
 /// @throws Error(usage, bad_model, bad_file, unsupported_format, cannot_read).
 BodyModel load_body_model(const ModelFiles& files, const std::vector<std::string>& data_folders);
 
+/// How a file of the user's is recorded in registration.json.
+/// @throws Error(cannot_read).
+FileInfo file_info(const std::string& path);
+
 /// Everything that a registration needs besides networks. For a user's own model the landmarks are learnt by
 /// looking at it with `run_network` (once; later runs find them in the cache).
 /// @throws as load_body_model(), and Error(cancelled).

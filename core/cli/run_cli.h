@@ -30,9 +30,9 @@ using RegisterFunction = std::function<Registration(Scan scan, const Settings& s
 /// @throws Error when they cannot be used.
 using RegisterFactory = std::function<RegisterFunction(const RegisterArguments& arguments)>;
 
-/// Loads a body model; an empty name means the default body.
+/// Loads a body model; an empty name means the default body, or no soft tissue.
 /// @throws Error when it cannot be used.
-using BodyOpener = std::function<BodyModel(const std::string& model_file)>;
+using BodyOpener = std::function<BodyModel(const std::string& model_file, const std::string& dmpl_file)>;
 
 /// What the command line is given by the process that runs it.
 struct CliContext {

@@ -16,9 +16,10 @@
 namespace vitruvian {
 
 BodyOpener native_body(std::vector<std::string> folders) {
-  return [folders = std::move(folders)](const std::string& model_file) {
+  return [folders = std::move(folders)](const std::string& model_file, const std::string& dmpl_file) {
     ModelFiles files;
     files.model = model_file;
+    files.dmpl = dmpl_file;
     files.betas = kEveryBeta;
     return load_body_model(files, folders);
   };

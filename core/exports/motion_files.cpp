@@ -11,7 +11,12 @@ namespace vitruvian {
 namespace {
 
 constexpr int kBodyJoints = 22;
-constexpr std::size_t kAmassPose = 156;
+constexpr std::size_t kAmassPose = 156, kAmassDmpls = 8;
+
+/// The linear coefficients without expression and soft tissue.
+Eigen::VectorXd shape_of(const ExportedBody& body) {
+  return body.state.betas.head(std::min<Index>(body.state.betas.size(), body.model.shape_count()));
+}
 
 std::string number(double value, const char* format) {
   char text[40];
@@ -38,13 +43,20 @@ std::string to_amass_npz(const ExportedBody& body) {
   for (Index j = 0; j < std::min<Index>(kBodyJoints, pose.cols()); ++j) {
     for (int k = 0; k < 3; ++k) poses[static_cast<std::size_t>(3 * j + k)] = pose(k, j);
   }
-  const std::vector<double> trans(translation.data(), translation.data() + 3), dmpls(8, 0), rate = {30};
-  const std::vector<double> betas(body.state.betas.data(), body.state.betas.data() + body.state.betas.size());
+  const std::vector<double> trans(translation.data(), translation.data() + 3), rate = {30};
+  const Eigen::VectorXd shape = shape_of(body);
+  const std::vector<double> betas(shape.data(), shape.data() + shape.size());
+  std::vector<double> dmpls(kAmassDmpls, 0);
+  if (body.state.betas.size() == body.model.beta_count()) {
+    const Index count = std::min<Index>(kAmassDmpls, body.model.dmpl_count);
+    Eigen::Map<Eigen::VectorXd>(dmpls.data(), count) =
+        body.state.betas.segment(body.model.beta_count() - body.model.dmpl_count, count);
+  }
   std::vector<NpzItem> items(6);
   items[0] = {.name = "poses", .shape = {1, kAmassPose}, .doubles = poses};
   items[1] = {.name = "trans", .shape = {1, 3}, .doubles = trans};
   items[2] = {.name = "betas", .shape = {betas.size()}, .doubles = betas};
-  items[3] = {.name = "dmpls", .shape = {1, 8}, .doubles = dmpls};
+  items[3] = {.name = "dmpls", .shape = {1, kAmassDmpls}, .doubles = dmpls};
   const std::string gender(name_of(body.gender));
   items[4] = {.name = "gender", .shape = {}, .text = gender};
   items[5] = {.name = "mocap_framerate", .shape = {}, .doubles = rate};
@@ -58,7 +70,7 @@ std::string to_smpl_codec(const ExportedBody& body) {
   // SMPL has 24 body joints, its successors 22 and hands.
   const Index joints = std::min<Index>(version == 0 ? 24 : kBodyJoints, pose.cols());
   const Points3f rounded = pose.leftCols(joints).cast<float>();
-  const Eigen::VectorXf betas = body.state.betas.cast<float>();
+  const Eigen::VectorXf betas = shape_of(body).cast<float>();
   const Vec3f translation = body.state.translation.cast<float>();
   const std::vector<std::int32_t> codec = {2}, smpl = {version}, sex = {gender}, frames = {1};
   const std::vector<float> rate = {30};

@@ -4,19 +4,22 @@
 #include <utility>
 
 #include "anthropometry/posture.h"
+#include "pipeline/body_parameters.h"
 
 namespace vitruvian {
 namespace {
 
-const BodyParameters& parameters_of(const Registration& registration) {
+const BodyParameters& known_parameters(const Registration& registration) {
   if (!registration.parameters) {
     throw Error(ErrorCode::usage, "the registration failed and has no body to measure");
   }
   return *registration.parameters;
 }
 
-BodyState state_of(const BodyParameters& p) {
-  return BodyState::from_axis_angle(p.pose, p.betas, p.translation_m);
+/// Standing straight, with the mouth shut.
+BodyState standing_state(const MeasuredModel& model, BodyParameters parameters) {
+  parameters.expression.setZero();
+  return standard_posture(model, state_of(model.body(), parameters).betas);
 }
 
 /// The rows of surface_segments by segment.
@@ -57,10 +60,10 @@ MeasuredRegistration::MeasuredRegistration(const Registration& registration, con
     : registration_(registration),
       model_(body),
       landmarks_(model_),
-      state_(state_of(parameters_of(registration))),
+      state_(state_of(body, known_parameters(registration))),
       rest_offsets_(std::move(rest_offsets)),
       scanned_(model_, state_, rest_offsets_),
-      standing_(model_, standard_posture(model_, state_.betas), rest_offsets_),
+      standing_(model_, standing_state(model_, *registration.parameters), rest_offsets_),
       scan_from_body_(registration.alignment.body_from_scan.inverse()) {
   report_.registration_sha256 = std::move(sha256);
   report_.body = measure_body(scanned_);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/error.h"
+
 namespace vitruvian {
 
 BodyParameters parameters_of(const BodyModel& body, const BodyState& state) {
@@ -17,12 +19,21 @@ BodyParameters parameters_of(const BodyModel& body, const BodyState& state) {
   return parameters;
 }
 
-BodyState state_of(const BodyParameters& parameters) {
-  const Index shapes = parameters.betas.size(), expressions = parameters.expression.size();
-  Eigen::VectorXd coefficients(shapes + expressions + parameters.dmpl.size());
-  coefficients.head(shapes) = parameters.betas;
-  coefficients.segment(shapes, expressions) = parameters.expression;
-  coefficients.tail(parameters.dmpl.size()) = parameters.dmpl;
+BodyState state_of(const BodyModel& body, const BodyParameters& parameters) {
+  const Index shapes = parameters.betas.size(), expressions = parameters.expression.size(),
+              tissues = parameters.dmpl.size();
+  if (parameters.pose.cols() != body.joint_count() || shapes > body.shape_count() ||
+      expressions > body.expression_count || tissues > body.dmpl_count) {
+    throw Error(ErrorCode::usage, "these parameters are not of the model " + body.name +
+                                      ": it has fewer joints, or lacks shape, expression or soft tissue");
+  }
+  Eigen::VectorXd coefficients = parameters.betas;
+  if (expressions + tissues > 0) {
+    coefficients = Eigen::VectorXd::Zero(body.beta_count());
+    coefficients.head(shapes) = parameters.betas;
+    coefficients.segment(body.shape_count(), expressions) = parameters.expression;
+    coefficients.segment(body.shape_count() + body.expression_count, tissues) = parameters.dmpl;
+  }
   return BodyState::from_axis_angle(parameters.pose, coefficients, parameters.translation_m);
 }
 

@@ -19,7 +19,8 @@ constexpr int kRefineSamples = 20000;
 constexpr double kSureKeypoint = 0.5;
 
 /// A file that is of one gender says so, unless the user says otherwise.
-ModelInfo describe_model(const BodyModel& body, Gender wanted, const BodyState& state) {
+ModelInfo describe_model(const Models& models, Gender wanted, const BodyState& state) {
+  const BodyModel& body = models.body;
   ModelInfo info;
   info.name = body.name;
   info.family = body.family;
@@ -29,6 +30,8 @@ ModelInfo describe_model(const BodyModel& body, Gender wanted, const BodyState& 
   info.faces = body.face_count();
   info.betas = static_cast<int>(std::min<Index>(state.betas.size(), body.shape_count()));
   info.joints = body.joint_count();
+  info.dmpl = models.dmpl;
+  info.prior = models.users_prior;
   return info;
 }
 
@@ -165,7 +168,7 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
   const Scan& scan = input.scan.scan;
   result.scan = {scan.file_name, scan.sha256, static_cast<long>(scan.vertices.cols()),
                  static_cast<long>(scan.faces.cols())};
-  result.model = describe_model(body, input.settings.gender, state);
+  result.model = describe_model(input.models, input.settings.gender, state);
   result.alignment = describe_alignment(input.body_from_scan, input.unit, input.method);
   result.keypoints = input.keypoints;
   result.parameters = parameters_of(body, state);

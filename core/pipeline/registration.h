@@ -9,6 +9,7 @@
 #include "base/types.h"
 #include "measure/surface_error.h"
 #include "measure/verdict.h"
+#include "pipeline/models.h"
 #include "pipeline/settings.h"
 
 namespace vitruvian {
@@ -52,6 +53,7 @@ struct ModelInfo {
   std::string name, family, sha256;
   Gender gender = Gender::neutral;
   int vertices = 0, faces = 0, betas = 0, joints = 0;
+  std::optional<FileInfo> dmpl, prior;  ///< files of the user's besides the model's
 };
 
 /// Milliseconds by stage; a stage that was not run is 0.

@@ -82,6 +82,11 @@ ordered_json model_json(const ModelInfo& model) {
   result["betas"] = model.betas;
   result["joints"] = model.joints;
   result["sha256"] = model.sha256;
+  const auto add_file = [&](const char* name, const std::optional<FileInfo>& info) {
+    if (info) result[name] = {{"file", info->file}, {"sha256", info->sha256}};
+  };
+  add_file("dmpl", model.dmpl);
+  add_file("prior", model.prior);
   return result;
 }
 

@@ -135,6 +135,12 @@ Registration parse_registration(std::string_view text, const std::string& file_n
   registration.model.betas = static_cast<int>(model.at("betas").whole(0, kLargestCount));
   registration.model.joints = static_cast<int>(model.at("joints").whole(0, kLargestCount));
   registration.model.sha256 = model.at("sha256").text();
+  const auto users_file = [&](const char* name) -> std::optional<FileInfo> {
+    if (!model.has(name)) return std::nullopt;
+    return FileInfo{model.at(name).at("file").text(), model.at(name).at("sha256").text()};
+  };
+  registration.model.dmpl = users_file("dmpl");
+  registration.model.prior = users_file("prior");
 
   registration.alignment = read_alignment(document);
   registration.keypoints = read_keypoints(document.at("keypoints"));

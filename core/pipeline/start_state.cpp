@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fit/landmark_fit.h"
+#include "pipeline/body_parameters.h"
 #include "pipeline/paper_pipeline.h"
 #include "pipeline/settings.h"
 
@@ -24,10 +25,16 @@ BodyState rest_pose_at(const FitModel& model, const Vec3d& centroid) {
 }
 
 BodyState state_of(const FitModel& model, const BodyParameters& parameters) {
-  Eigen::VectorXd betas = Eigen::VectorXd::Zero(model.betas);
-  const Index shared = std::min<Index>(model.betas, parameters.betas.size());
-  betas.head(shared) = parameters.betas.head(shared);
-  return BodyState::from_axis_angle(parameters.pose, betas, parameters.translation_m);
+  BodyParameters kept = parameters;
+  kept.betas.conservativeResize(std::min<Index>(model.body.shape_count(), parameters.betas.size()));
+  kept.expression.conservativeResize(
+      std::min<Index>(model.body.expression_count, parameters.expression.size()));
+  kept.dmpl.conservativeResize(std::min<Index>(model.body.dmpl_count, parameters.dmpl.size()));
+  BodyState state = state_of(model.body, kept);
+  const Index known = std::min<Index>(model.betas, state.betas.size());
+  state.betas.conservativeResize(model.betas);
+  state.betas.tail(model.betas - known).setZero();
+  return state;
 }
 
 bool start_is_given(const Settings& settings) {

@@ -22,7 +22,7 @@ class MeasureCommand : public CliTest {
 
   /// A registration of the default body at rest, with the given shape.
   std::string write_registration(double first_beta = 0) {
-    const BodyModel body = open_body_("");
+    const BodyModel body = open_body_("", "");
     Registration r = sample_registration();
     r.model.name = body.name;
     r.model.sha256 = body.sha256;
@@ -98,7 +98,7 @@ TEST_F(MeasureCommand, WritesDimensionsLandmarksAndExports) {
 }
 
 TEST_F(MeasureCommand, VertexOffsetsCount) {
-  const BodyModel body = open_body_("");
+  const BodyModel body = open_body_("", "");
   Registration r =
       parse_registration(read(std::filesystem::path(write_registration()).filename().string()), "r");
   r.parameters->offsets_file = "offsets.npz";

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "cli/wiring.h"
 #include "core/cli/cli_fixture.h"
@@ -112,6 +113,92 @@ TEST_F(ModelLoading, TheSameBodyFromAnSmplFileRegistersTheSame) {
   for (std::size_t j = 0; j < file.joints.size(); ++j)
     worst = std::max(worst, (file.joints[j].scan - bundled.joints[j].scan).norm());
   EXPECT_LT(worst, 1e-4);
+}
+
+/// The default body as SMPL .pkl, .npz and SMPL+H .pkl: the same vertices, and a scan registered from the
+/// same keypoints ends at the same body.
+TEST_F(ModelLoading, EveryFileOfTheSameBodyRegistersTheSameFromGivenKeypoints) {
+  const BodyState truth = testing::test_state(2, 5);
+  const Points3d vertices = posed_vertices<double>(default_body(), truth);
+  const std::string scan = write("body.ply", to_ply({.vertices = vertices, .faces = default_body().faces}));
+  nlohmann::json keypoints = {{"frame", "body"}, {"joints", nlohmann::json::object()}};
+  const Points3d joints = pose_skeleton(default_body(), truth).joints;
+  for (int j = 0; j < 22; ++j) {
+    // A hand places them a centimetre off.
+    const Vec3d p = joints.col(j) + 0.01 * Vec3d(j % 3 - 1, j % 2, (j + 1) % 3 - 1);
+    keypoints["joints"][std::string(kSmplJointNames[static_cast<std::size_t>(j)])]["position"] = {
+        p.x(), p.y(), p.z()};
+  }
+  const std::vector<std::string> common = {"register",
+                                           scan,
+                                           "--threads",
+                                           "2",
+                                           "--quiet",
+                                           "--keypoints",
+                                           write("keypoints.json", keypoints.dump()),
+                                           "--align-file",
+                                           write("align.json", "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]")};
+  const auto registered = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = common;
+    arguments.insert(arguments.end(), {"--out", path(out)});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_LE(run(arguments), 1) << error();
+    const std::string mesh = read(out + "/body/registered.ply");
+    return read_scan(std::as_bytes(std::span(std::string_view(mesh))), "registered.ply", Execution(1));
+  };
+  const Scan own = registered("own", {});
+  // No landmark is looked for: any calibration will do.
+  const std::vector<std::byte> text = testing::file_bytes(VITRUVIAN_SOURCE_DIR "/models/landmarks.json");
+  const auto landmarks =
+      landmarks_from_json(std::string(reinterpret_cast<const char*>(text.data()), text.size()), "l");
+  for (const std::string name : {"own_smpl.pkl", "own_smpl.npz", "own_smplh.pkl"}) {
+    SCOPED_TRACE(name);
+    const BodyModel body = load_body_model({smpl_file(name), "", "", 32}, folders_);
+    ASSERT_EQ(body.vertex_count(), default_body().vertex_count());
+    EXPECT_LT((body.v_template - default_body().v_template).cwiseAbs().maxCoeff(), 1e-5);
+    CalibrationCache(cache_).keep(body.sha256, landmarks);
+    const Scan same = registered("file", {"--model", smpl_file(name), "--betas", "32"});
+    ASSERT_EQ(same.vertices.cols(), own.vertices.cols());
+    const Points3d difference = (same.vertices.cast<double>().colwise() + same.origin) -
+                                (own.vertices.cast<double>().colwise() + own.origin);
+    EXPECT_LT(difference.colwise().norm().maxCoeff(), 1e-4);
+    EXPECT_LT((own.vertices.cast<double>().colwise() + own.origin - vertices).colwise().norm().mean(), 2e-3);
+  }
+}
+
+/// Measures need the soft tissue that the registration was made with; it changes them.
+TEST_F(ModelLoading, SoftTissueIsRecordedAndMeasured) {
+  open_body_ = native_body(folders_);
+  const BodyModel body = open_body_(smpl_file("SMPLH_NEUTRAL.npz"), smpl_file("dmpl.npz"));
+  ASSERT_EQ(body.dmpl_count, 8);
+  Registration r = sample_registration();
+  r.model.sha256 = body.sha256;
+  r.model.dmpl = file_info(smpl_file("dmpl.npz"));
+  r.model.prior = FileInfo{"V02_05.ckpt", std::string(64, '0')};
+  const BodyState rest = BodyState::rest(body);
+  r.parameters = BodyParameters{
+      .betas = Eigen::VectorXd::Zero(10), .pose = rest.axis_angle(), .translation_m = Vec3d::Zero()};
+  r.parameters->dmpl = Eigen::VectorXd::Zero(8);
+  const auto volume = [&](const std::vector<std::string>& more) {
+    const std::string file = write("r.json", registration_json(r, "1", JsonStyle::pretty));
+    std::vector<std::string> arguments = {"measure", file, "--model", smpl_file("SMPLH_NEUTRAL.npz")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run(arguments), 0) << error();
+    return nlohmann::json::parse(out())["body"]["volume_cm3"].get<double>();
+  };
+  const std::vector<std::string> tissue = {"--dmpl", smpl_file("dmpl.npz")};
+  const double without = volume(tissue);
+  r.parameters->dmpl[3] = 1;
+  EXPECT_GT(std::abs(volume(tissue) - without), 1);
+  EXPECT_EQ(run({"measure", path("r.json"), "--model", smpl_file("SMPLH_NEUTRAL.npz")}), 2);
+  EXPECT_TRUE(said("--dmpl")) << error();
+  EXPECT_EQ(run({"measure", path("r.json"), "--model", smpl_file("SMPLH_NEUTRAL.npz"), "--dmpl",
+                 smpl_file("SMPLH_NEUTRAL.npz")}),
+            2);
+  const Registration back = parse_registration(read("r.json"), "r");
+  EXPECT_EQ(back.model.dmpl->sha256, r.model.dmpl->sha256);
+  EXPECT_EQ(back.model.dmpl->file, "dmpl.npz");
+  EXPECT_EQ(back.model.prior->file, "V02_05.ckpt");
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ inline const Models& models() {
     const std::string file = VITRUVIAN_SOURCE_DIR "/models/landmarks.json";
     const std::vector<std::byte> bytes = testing::file_bytes(file);
     const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    return Models{default_body(), testing::shipped_prior(), landmarks_from_json(text, file)};
+    return Models{default_body(), testing::shipped_prior(), landmarks_from_json(text, file), std::nullopt,
+                  std::nullopt};
   }();
   return all;
 }

@@ -14,7 +14,8 @@ namespace vitruvian {
 inline Registration sample_registration() {
   Registration r;
   r.scan = {"J\u00f6rg \"1\".ply", std::string(64, 'a'), 120000, 239996};
-  r.model = {"default", "vitruvian", std::string(64, 'b'), Gender::female, 6890, 13776, 32, 24};
+  r.model = {"default", "vitruvian", std::string(64, 'b'), Gender::female, 6890, 13776,
+             32,        24,          std::nullopt,         std::nullopt};
   r.alignment.body_from_scan << 0, 0.001, 0, -0.1 / 3, 0, 0, 0.001, -0.9, 0.001, 0, 0, 0.25, 0, 0, 0, 1;
   r.alignment.canonical_from_body << -1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1;
   r.alignment.unit = Unit::millimetre;
