@@ -176,6 +176,10 @@ EMSCRIPTEN_KEEPALIVE const char* vitruvian_findings_report() {
   return guarded([&] { return kept(open_session().findings_report()); }, kNoText);
 }
 
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_edit(const char* request) {
+  return guarded([&] { return kept(open_session().edit(request)); }, kNoText);
+}
+
 EMSCRIPTEN_KEEPALIVE const char* vitruvian_files_report(const char* mesh_format) {
   return guarded([&] { return kept(open_session().files_report(mesh_format)); }, kNoText);
 }

@@ -10,6 +10,7 @@
 #include "measured_report.h"
 #include "pipeline/report.h"
 #include "pipeline/result_json.h"
+#include "pipeline/result_json_value.h"
 #include "session_json.h"
 
 namespace vitruvian::wasm {
@@ -49,6 +50,7 @@ Buffer::~Buffer() { std::free(data_); }
 Session::~Session() { task_.stop(); }
 
 void Session::load(ModelPart part, const Buffer& file, const std::string& name) {
+  editor_.reset();
   switch (part) {
     case ModelPart::body:
       measured_.reset();
@@ -73,6 +75,7 @@ void Session::open(Buffer file, std::string name) {
   unchanged_.reset();
   scan_.reset();
   shown_ = {};
+  editor_.reset();
   // std::function wants what it holds to be copyable.
   auto held = std::make_shared<Buffer>(std::move(file));
   task_.start([this, held, name = std::move(name)] {
@@ -105,6 +108,7 @@ int Session::configure(const std::string& settings) {
   chosen.threads = task_.execution().threads();
   if (pipeline_) pipeline_->configure(chosen);
   settings_ = chosen;
+  editor_.reset();
   if (!holds(PipelineStage::fit)) drop_result();
   int count = 0;
   while (count < kPipelineStageCount && holds(kStages[count])) ++count;
@@ -209,6 +213,12 @@ std::string Session::findings_report() {
   if (holds(PipelineStage::pose)) report["pose"] = describe_pose();
   if (holds(PipelineStage::fit)) report["result"] = describe_result();
   return text_of(report);
+}
+
+std::string Session::edit(const std::string& request) {
+  task_.require_idle();
+  if (!scan_) throw Error(ErrorCode::usage, "open a scan first");
+  return text_of(editor_.answer(parse_json(request, "editor"), {models_, *scan_, shown_, settings_}));
 }
 
 std::string Session::files_report(const std::string& mesh_format) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "editor.h"
 #include "geometry/mesh.h"
 #include "io/scan.h"
 #include "measured/export_files.h"
@@ -73,6 +74,8 @@ class Session {
 
   /// `{"align", "keypoints", "pose", "result"}` of the stages that are reached, null for the others.
   std::string findings_report();
+  /// Answers a request of the page's editors (class Editor) about the opened scan.
+  std::string edit(const std::string& request);
   /// `{"files": [{"name", "data"}]}`: what the command line writes, with the mesh as "ply", "obj" or "glb".
   std::string files_report(const std::string& mesh_format);
   /// measurements.json with where each dimension lies, and the standing body, `"standing":
@@ -122,6 +125,7 @@ class Session {
   PosedBody posed_;
   std::optional<Lesson> lesson_;
   std::optional<Lesson> unchanged_;  ///< the lesson with nothing changed, to compare with
+  Editor editor_;
 };
 
 }  // namespace vitruvian::wasm

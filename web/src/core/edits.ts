@@ -8,6 +8,12 @@ export interface KeypointSet {
   joints: Record<string, { position: Vec3; confidence?: number }>;
 }
 
+/** A part of the scan that is cut away: a box (taken to the cube from -1 to 1), or what lies behind a closed line on a picture. */
+export type Crop = { remove: "inside" | "outside" } & (
+  | { box_from_scan: Matrix }
+  | { clip_from_scan: Matrix; polygon: [number, number][] }
+);
+
 /** regions JSON: pairs that are matched with each other only. */
 export interface RegionSet {
   scan_sha256: string;
@@ -37,6 +43,8 @@ export interface Edits {
   /** given instead of detected */
   keypoints?: KeypointSet | null;
   regions?: RegionSet | null;
+  /** cut away before anything else */
+  crops?: Crop[] | null;
   /** where the fit starts; "file" belongs to `start` */
   init?: "auto" | "keypoints" | "tpose" | "file";
   start?: StartBody | null;

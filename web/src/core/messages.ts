@@ -1,4 +1,5 @@
 // Typed messages between the page and the worker that holds the core.
+import type { EditorAnswer, EditorRequest } from "../editor/requests";
 import type { Measurements, Section } from "./measurements";
 import type { BodyDescription, BodyParameters, LessonData, LessonSettings, PosedBody } from "./teaching";
 import type { CoreStage, ErrorCode, Findings, OutputFile, ScanData, Settings } from "./types";
@@ -19,6 +20,8 @@ export interface Calls {
   run: { args: { until: CoreStage; again: boolean }; result: Findings };
   /** Ends the `run` under way, which then fails with code "cancelled". */
   cancel: { args: Record<string, never>; result: null };
+  /** Asks one of the editors' questions about the opened scan. */
+  edit: { args: { request: EditorRequest }; result: EditorAnswer };
   /** Files of the last result as the command line writes them. */
   files: { args: { format: "ply" | "obj" | "glb" }; result: OutputFile[] };
   /** Measures the last result. */

@@ -3,6 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { droppedFiles, isPile } from "../batch/files";
 import * as queue from "../batch/queue";
 import { kCoreStages, kStages } from "../core/types";
+import { tool as editorTool } from "../editor/state";
 import { cancel, openFile, register, run } from "./actions";
 import { About, Help } from "./Dialogs";
 import { Header } from "./Header";
@@ -32,6 +33,8 @@ export function App() {
       if (event.key === "Escape") return state.busy.value ? cancel() : undefined;
       if ((event.target as HTMLElement).closest(TYPING)) return;
       if (event.key !== "?" && mode.value !== "scan") return;
+      // The editor has its own keys, and a run would leave its edits out.
+      if (editorTool.value) return;
       const stage = kStages[Number(event.key) - 1];
       if (stage) state.stage.value = stage;
       else if (event.key === "o") pick();

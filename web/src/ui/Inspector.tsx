@@ -1,6 +1,9 @@
 import { useEffect } from "preact/hooks";
 import { explain } from "../core/explain";
 import { kStages, type Stage } from "../core/types";
+import { EditorPanel } from "../editor/EditorPanel";
+import { HandTools } from "../editor/HandTools";
+import { tool as editorTool } from "../editor/state";
 import { seconds } from "../result/format";
 import { cancel } from "./actions";
 import { AlignPanel } from "./panels/AlignPanel";
@@ -16,6 +19,16 @@ import { useNow } from "./useNow";
 /** The panel of the chosen stage, with the progress and the problem of the work under way. */
 export function Inspector({ pick }: { pick: () => void }) {
   const stage = state.stage.value;
+  if (editorTool.value) {
+    return (
+      <aside aria-label="Edit by hand">
+        <h2>Edit by hand</h2>
+        <Problem stage={stage} />
+        <BusyBar />
+        <EditorPanel />
+      </aside>
+    );
+  }
   return (
     <aside aria-label={STAGE_NAMES[stage]}>
       <h2>{STAGE_NAMES[stage]}</h2>
@@ -27,6 +40,7 @@ export function Inspector({ pick }: { pick: () => void }) {
       {stage === "pose" && <PosePanel />}
       {stage === "register" && <RegisterPanel />}
       {stage === "results" && <ResultsPanel />}
+      {stage !== "register" && <HandTools stage={stage} />}
     </aside>
   );
 }

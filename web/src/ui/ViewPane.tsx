@@ -1,12 +1,17 @@
 import { useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import { tool as editorTool } from "../editor/state";
 import { millimetres } from "../result/format";
 import { startViewer } from "../viewer/start";
 import type { Direction, Viewer } from "../viewer/viewer";
 import { Legend } from "./Legend";
+import { lazyPart } from "./lazy";
 import * as measuring from "./measuring";
 import * as state from "./state";
 import { isDark } from "./theme";
+
+/** three.js and what draws with it are loaded when the editor is opened first. */
+const EditorPane = lazyPart(async () => (await import("../editor/EditorPane")).EditorPane);
 
 const TURN = Math.PI / 24;
 const SIDES: [Direction, string][] = [
@@ -128,6 +133,7 @@ export function ViewPane() {
       {measuring.drawn.value && <p class="measured">{measuring.drawn.value.text}</p>}
       {probe.value && <p class="probe">{probe.value}</p>}
       <BusyNote />
+      {editorTool.value && <EditorPane />}
     </section>
   );
 }

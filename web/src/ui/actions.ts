@@ -12,6 +12,7 @@ import {
   type Settings,
   type Stage,
 } from "../core/types";
+import type { AnswerTo, EditorRequest } from "../editor/requests";
 import { save, zipped } from "../result/download";
 import * as state from "./state";
 
@@ -105,6 +106,9 @@ export async function openFile(file: Blob, name: string): Promise<void> {
   if (state.busy.value) return;
   batch(() => {
     state.scan.value = null;
+    // What was done by hand belongs to the scan before.
+    const edits = { body_from_scan: null, crops: null, keypoints: null, regions: null };
+    state.settings.value = { ...state.settings.value, ...edits };
     dropAll();
     state.stage.value = "scan";
   });
@@ -186,6 +190,12 @@ export async function borrowCore<T>(
 export async function ask<K extends Kind>(kind: K, args: Calls[K]["args"]): Promise<Calls[K]["result"]> {
   await ensureCore();
   return client.call(kind, args);
+}
+
+/** Asks the core one of the editors' questions about the opened scan. @throws CoreError */
+export async function askEditor<R extends EditorRequest>(request: R): Promise<AnswerTo<R>> {
+  await ensureScan();
+  return (await client.call("edit", { request })) as AnswerTo<R>;
 }
 
 export function cancel(): void {

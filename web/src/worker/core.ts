@@ -48,6 +48,7 @@ interface Module {
   _vitruvian_reply_buffer(input: number, output: number, size: number): number;
   _vitruvian_resume(): number;
   _vitruvian_findings_report(): Text;
+  _vitruvian_edit(request: Text): Text;
   _vitruvian_files_report(format: Text): Text;
   _vitruvian_measurements_report(): Text;
   _vitruvian_profile_report(segment: Text, count: number): Text;
@@ -183,6 +184,11 @@ export class Core {
       this.check(this.module._vitruvian_resume());
     }
     return this.json<FindingsReport>(this.module._vitruvian_findings_report());
+  }
+
+  /** The editors' questions: JSON in, JSON out. */
+  edit<T>(request: unknown): T {
+    return this.withText(JSON.stringify(request), (text) => this.json<T>(this.module._vitruvian_edit(text)));
   }
 
   /** What the command line writes. */

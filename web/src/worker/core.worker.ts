@@ -2,6 +2,7 @@
 import type { Calls, Kind, Reply, Request } from "../core/messages";
 import { CoreError, type Findings, type ScanData } from "../core/types";
 import { Core } from "./core";
+import { answerEditor } from "./editor";
 import type { Networks } from "./networks";
 import { bodyOf, lessonOf, poseBody } from "./teaching";
 
@@ -100,6 +101,11 @@ const handlers: Handlers = {
         vertexErrorMm: core.floats(result.errors_mm),
       },
     };
+  },
+
+  async edit({ request }) {
+    await prepared();
+    return answerEditor(theCore(), request);
   },
 
   async cancel() {

@@ -1,0 +1,212 @@
+// The editor's scene in three panes over one canvas. World frame: the body frame (metres, Y up).
+import {
+  AmbientLight,
+  Box3,
+  DirectionalLight,
+  Group,
+  HemisphereLight,
+  Matrix4,
+  type Mesh,
+  type MeshLambertMaterial,
+  type Points,
+  Scene,
+  SRGBColorSpace,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import type { Matrix, Mesh as MeshData, Vec3 } from "../core/types";
+import { columnMajor } from "../result/transform";
+import { bodyObject, clear, scanObject } from "../viewer/parts";
+import { JointsObject, type ShownJoint } from "./joints_object";
+import { Pane, type PaneName } from "./panes";
+
+/** Pixels within which a pointer takes a joint: mouse, and fingers. */
+const REACH = { mouse: 14, touch: 28 };
+
+export class EditorView {
+  readonly scene = new Scene();
+  readonly panes: Pane[];
+  readonly scanRoot = new Group();
+  private readonly renderer: WebGLRenderer;
+  private readonly bodyRoot = new Group();
+  private readonly joints = new JointsObject();
+  private readonly origin = new Vector3();
+  private readonly observer: ResizeObserver;
+  private shown: readonly ShownJoint[] = [];
+  private frame = 0;
+  private fitted = false;
+  /** Called before a pane is drawn, to show what belongs into it alone. */
+  beforePane: (pane: Pane) => void = () => {};
+
+  /** @throws Error when the browser has no WebGL. */
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    elements: Record<PaneName, HTMLElement>,
+  ) {
+    // Three pictures at once: smooth edges would cost machines without a graphics card seconds.
+    this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: true });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.outputColorSpace = SRGBColorSpace;
+    this.renderer.setScissorTest(true);
+    this.renderer.debug.checkShaderErrors = false;
+    this.scanRoot.matrixAutoUpdate = false;
+    const key = new DirectionalLight(0xffffff, 1.2);
+    key.position.set(1, 1, 1);
+    const fill = new DirectionalLight(0xffffff, 0.6);
+    fill.position.set(-1, 0.4, -1);
+    this.scene.add(
+      key,
+      fill,
+      new AmbientLight(0xffffff, 0.7),
+      new HemisphereLight(0xffffff, 0x777788, 1),
+      this.scanRoot,
+      this.bodyRoot,
+      this.joints.root,
+    );
+    const changed = () => this.request();
+    this.panes = (["front", "side", "free"] as const).map((name) => new Pane(name, elements[name], changed));
+    this.observer = new ResizeObserver(() => {
+      for (const pane of this.panes) pane.resize();
+      this.request();
+    });
+    this.observer.observe(canvas);
+  }
+
+  /** @param mesh relative to `origin` in the scan frame */
+  setScan(mesh: MeshData, origin: Vec3): void {
+    clear(this.scanRoot);
+    this.origin.set(...origin);
+    const object = scanObject(mesh) as Mesh | Points;
+    const material = object.material as MeshLambertMaterial;
+    material.transparent = true;
+    material.opacity = 0.5;
+    // Otherwise each triangle is drawn twice, by programs that are made anew each time.
+    material.forceSinglePass = true;
+    object.renderOrder = 1;
+    this.scanRoot.add(object);
+    this.request();
+  }
+
+  setBodyFromScan(matrix: Matrix): void {
+    this.scanRoot.matrix.fromArray(columnMajor(matrix));
+    this.scanRoot.matrix.multiply(new Matrix4().makeTranslation(this.origin));
+    this.scanRoot.updateMatrixWorld(true);
+    if (!this.fitted) this.fit();
+    this.request();
+  }
+
+  /** How the scan lies as it is drawn. */
+  bodyFromScan(): Matrix4 {
+    return this.scanRoot.matrix.clone().multiply(new Matrix4().makeTranslation(this.origin.clone().negate()));
+  }
+
+  setBody(mesh: MeshData | null): void {
+    const old = this.bodyRoot.children[0] as Mesh | undefined;
+    if (mesh && old) {
+      // Same triangles: only the places are new.
+      const position = old.geometry.getAttribute("position");
+      (position.array as Float32Array).set(mesh.positions);
+      position.needsUpdate = true;
+      old.geometry.computeVertexNormals();
+    } else {
+      clear(this.bodyRoot);
+      if (mesh) {
+        const body = bodyObject(mesh);
+        body.geometry.disposeBoundsTree();
+        body.material.transparent = false;
+        body.frustumCulled = false;
+        this.bodyRoot.add(body);
+      }
+    }
+    this.request();
+  }
+
+  setJoints(joints: readonly ShownJoint[]): void {
+    this.shown = joints;
+    this.joints.update(joints);
+    this.request();
+  }
+
+  /** Scan to body: places of joints in the world. */
+  world(position: Vec3): Vector3 {
+    return new Vector3(...position).sub(this.origin).applyMatrix4(this.scanRoot.matrix);
+  }
+
+  /** Body to scan. */
+  scan(position: Vector3): Vec3 {
+    return position.clone().applyMatrix4(this.scanRoot.matrix.clone().invert()).add(this.origin).toArray();
+  }
+
+  scanDirection(direction: Vector3): Vec3 {
+    const inverse = this.scanRoot.matrix.clone().invert();
+    return direction.clone().transformDirection(inverse).toArray();
+  }
+
+  pane(name: PaneName): Pane {
+    return this.panes.find((pane) => pane.name === name)!;
+  }
+
+  /** Joint under a pixel of a pane; of several, the nearest. */
+  jointAt(pane: Pane, x: number, y: number, pointer: string): ShownJoint | null {
+    const reach = pointer === "touch" ? REACH.touch : REACH.mouse;
+    let best: ShownJoint | null = null;
+    let least = reach;
+    for (const joint of this.shown) {
+      const { x: u, y: v } = pane.pixel(joint.position);
+      // One that is chosen already is easier to take again.
+      const distance = Math.hypot(u - x, v - y) - (joint.selected ? 4 : 0);
+      if (distance < least) [best, least] = [joint, distance];
+    }
+    return best;
+  }
+
+  box(): Box3 {
+    const box = new Box3().setFromObject(this.scanRoot);
+    return box.isEmpty() ? new Box3(new Vector3(-0.5, -1, -0.3), new Vector3(0.5, 1, 0.3)) : box;
+  }
+
+  fit(): void {
+    this.fitted = this.scanRoot.children.length > 0;
+    const box = this.box();
+    for (const pane of this.panes) pane.fit(box);
+    this.request();
+  }
+
+  request(): void {
+    if (this.frame !== 0) return;
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      this.draw();
+    });
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.frame);
+    this.frame = -1;
+    this.observer.disconnect();
+    for (const pane of this.panes) pane.dispose();
+    clear(this.scanRoot);
+    clear(this.bodyRoot);
+    this.joints.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+
+  private draw(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return;
+    const ratio = this.renderer.getPixelRatio();
+    if (this.canvas.width !== Math.floor(width * ratio) || this.canvas.height !== Math.floor(height * ratio))
+      this.renderer.setSize(width, height, false);
+    const whole = this.canvas.getBoundingClientRect();
+    for (const pane of this.panes) {
+      const part = pane.element.getBoundingClientRect();
+      const area = [part.left - whole.left, whole.bottom - part.bottom, part.width, part.height] as const;
+      if (part.width === 0 || part.height === 0) continue;
+      this.beforePane(pane);
+      this.renderer.setViewport(...area);
+      this.renderer.setScissor(...area);
+      this.renderer.render(this.scene, pane.camera);
+    }
+  }
+}
