@@ -8,6 +8,7 @@ import type { Page } from "playwright-core";
 import { describe, expect } from "vitest";
 import { downloaded, openSample, PATIENCE_MS, pick, root, test, verdict } from "../e2e/harness";
 import type { Registration } from "../src/core/types";
+import { scriptBytes } from "./memory";
 
 const RUNS = 3;
 const LARGEST_RATIO = 3;
@@ -61,23 +62,6 @@ async function coreBytes(page: Page): Promise<number> {
   const text = await page.locator("dt:text-is('Memory') + dd").innerText();
   await page.keyboard.press("Escape");
   return Number.parseFloat(text) * (text.endsWith("MB") ? 1e6 : 1e3);
-}
-
-/**
- * Bytes of JavaScript memory after a collection: of the page, and of the worker that holds the core (WASM included).
- * The core's threads count the same shared memory again and are left out.
- */
-async function scriptBytes(page: Page): Promise<{ page: number; worker: number }> {
-  const breakdown: { bytes: number; attribution: { scope: string }[] }[] = await page.evaluate(async () => {
-    // @ts-expect-error: Chromium only
-    return (await performance.measureUserAgentSpecificMemory()).breakdown;
-  });
-  const of = (scope: string) =>
-    breakdown.filter(({ attribution }) => attribution[0]?.scope === scope).map(({ bytes }) => bytes);
-  return {
-    page: of("Window").reduce((sum, bytes) => sum + bytes, 0),
-    worker: Math.max(0, ...of("DedicatedWorkerGlobalScope")),
-  };
 }
 
 describe("the page", () => {
