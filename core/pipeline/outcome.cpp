@@ -51,10 +51,16 @@ std::vector<JointFinding> limit_excess(const BodyModel& body, const PosePrior& p
 }
 
 std::vector<JointFinding> keypoint_disagreement(const std::vector<LandmarkTarget>& targets,
-                                                const BodyModel& body, const Skeleton& skeleton) {
+                                                const BodyModel& body, const Skeleton& skeleton,
+                                                const VerdictFeatures& features) {
   std::vector<JointFinding> findings;
   for (const LandmarkTarget& l : targets) {
     if (l.weight < kSureKeypoint) continue;
+    // Where a part was not scanned the detector guessed as the fit did; the segments are in joint order.
+    const std::size_t s = static_cast<std::size_t>(l.joint);
+    if (s < features.observed_share.size() && features.observed_share[s] < kObservedShare &&
+        features.observed_share[s] + features.unseen_share[s] >= kObservedShare)
+      continue;
     const double distance = (landmark_position(skeleton, l) - l.target).norm();
     const std::string& name = body.joint_names[l.joint];
     // A wrist has landmarks on the fingers too: the worst speaks for it.
@@ -160,7 +166,7 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
   features.typical_mm = 1e3 * input.fit.score.typical;
   features.misfit_parts = misfit_parts(input.fit);
   features.joint_limit_excess_rad = limit_excess(body, input.models.prior, state);
-  features.keypoint_disagreement_m = keypoint_disagreement(input.targets, body, skeleton);
+  features.keypoint_disagreement_m = keypoint_disagreement(input.targets, body, skeleton, features);
   features.stature_m = standing_stature(body, state.betas);
   if (!input.unit_note.empty()) features.notes.push_back(input.unit_note);
 
