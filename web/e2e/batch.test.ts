@@ -72,6 +72,7 @@ describe("a batch", () => {
     await page.getByRole("button", { name: "Close" }).click();
 
     await page.getByLabel("Keep results in this browser").check();
+    await page.getByText("4 kept.").waitFor();
     await page.reload();
     await page.getByRole("button", { name: "Batch" }).click();
     await page.getByText("4 scans:").waitFor();

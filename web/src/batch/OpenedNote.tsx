@@ -20,7 +20,12 @@ export function OpenedNote() {
       >
         Put it back
       </button>
-      <button type="button" onClick={leave} title="The batch keeps the result that it has">
+      <button
+        type="button"
+        disabled={busy.value !== null}
+        onClick={leave}
+        title="The batch keeps the result that it has"
+      >
         Back without
       </button>
     </section>

@@ -1,7 +1,7 @@
 import type { Axis, Gender, Settings, Unit } from "../core/types";
 import { Choice } from "../ui/Choice";
 import * as queue from "./queue";
-import { keeping, keepingFailed, setKeeping } from "./store";
+import { keeping, keepingFailed, keptCount, setKeeping } from "./store";
 
 const BODIES: [Gender, string][] = [
   ["neutral", "Neutral"],
@@ -76,6 +76,7 @@ export function SettingsPanel() {
         Keep results in this browser when the page is closed
       </label>
       <p class="quiet">
+        {keeping.value && keptCount.value > 0 && `${keptCount.value} kept. `}
         On this computer only, without the scans themselves. Switching it off deletes what was kept.
       </p>
       {keepingFailed.value && (

@@ -1,8 +1,8 @@
 // Works the queue, one scan after the other, with the page's one core.
 import { effect } from "@preact/signals";
 import type { CoreClient } from "../core/client";
-import { CoreError, type ResultData } from "../core/types";
-import { borrowCore, openFile, run } from "../ui/actions";
+import { CoreError, type ResultData, type Settings } from "../core/types";
+import { borrowCore, change, openFile, run } from "../ui/actions";
 import { mode } from "../ui/mode";
 import * as page from "../ui/state";
 import { outcomeOf } from "./outcome";
@@ -91,12 +91,16 @@ async function finish(id: number, client: CoreClient, result: ResultData, second
   queue.update(id, { status: "done", outcome, error: null });
 }
 
+/** The main view's own settings, while a scan of the batch is open in it. */
+let settingsBefore: Settings | null = null;
+
 /** Opens a scan in the main view, registered anew if it was, to be looked at and mended. */
 export async function openInView(id: number): Promise<void> {
   const item = queue.itemOf(id);
   if (!item?.file || item.status === "working") return;
   pause();
   await coreIsFree();
+  settingsBefore ??= page.settings.value;
   page.settings.value = queue.settingsOf(item);
   queue.opened.value = id;
   mode.value = "scan";
@@ -121,4 +125,8 @@ export function leave(): void {
   queue.selected.value = queue.opened.value;
   queue.opened.value = null;
   mode.value = "batch";
+  if (!settingsBefore) return;
+  page.settings.value = settingsBefore;
+  settingsBefore = null;
+  void change({});
 }

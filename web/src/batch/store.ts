@@ -19,6 +19,8 @@ interface Kept {
 
 /** Whether results are kept. */
 export const keeping = signal(wanted());
+/** Results that are kept by now. */
+export const keptCount = signal(0);
 /** Why they cannot be, in plain words; empty when they can. */
 export const keepingFailed = signal("");
 
@@ -93,6 +95,7 @@ export async function keepItem(id: number): Promise<void> {
   const kept = await keptForm(item);
   await attempt(async () => {
     await ask("readwrite", (store) => store.put(kept));
+    keptCount.value = await ask("readonly", (store) => store.count());
   });
 }
 
