@@ -174,6 +174,18 @@ int repair(const FitModel& model, const ScanTarget& scan, const HypothesisSettin
   return repairs;
 }
 
+/// The limits that fit to the scan: fewer for one with holes.
+HypothesisSettings settings_for(const ScanTarget& scan, HypothesisSettings settings) {
+  if (!scan.at_rim.empty()) {
+    // Of a thin part that was scanned from one side alone the other side is near, faces away, and is no
+    // fault.
+    settings.bad_opposed_bare = settings.bad_opposed_clothed;
+    settings.bad_bare_model_to_scan_p95 = settings.bad_model_to_scan_p95;
+    settings.bad_bare_model_to_scan_p99 = std::numeric_limits<double>::infinity();
+  }
+  return settings;
+}
+
 /// Finds out whether a fit is still bad, and which hands and feet speak against it.
 void judge(const FitModel& model, const ScanTarget& scan, const HypothesisSettings& settings,
            HypothesisResult& result) {
@@ -232,14 +244,7 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
                                 const std::vector<LandmarkTarget>& landmarks,
                                 const std::vector<LandmarkTarget>& plain, const HypothesisSettings& given,
                                 const Execution& execution) {
-  HypothesisSettings settings = given;
-  if (!scan.at_rim.empty()) {
-    // Of a thin part that was scanned from one side alone the other side is near, faces away, and is no
-    // fault.
-    settings.bad_opposed_bare = settings.bad_opposed_clothed;
-    settings.bad_bare_model_to_scan_p95 = settings.bad_model_to_scan_p95;
-    settings.bad_bare_model_to_scan_p99 = std::numeric_limits<double>::infinity();
-  }
+  const HypothesisSettings settings = settings_for(scan, given);
   HypothesisResult best;
   std::vector<BodyState> tried;
   int budget = settings.refit_budget;
@@ -291,7 +296,8 @@ HypothesisResult fit_hypotheses(const FitModel& model, const ScanTarget& scan,
 
 HypothesisResult fit_from_state(const FitModel& model, const ScanTarget& scan, const BodyState& start,
                                 const std::string& name, const std::vector<LandmarkTarget>& landmarks,
-                                const HypothesisSettings& settings, const Execution& execution) {
+                                const HypothesisSettings& given, const Execution& execution) {
+  const HypothesisSettings settings = settings_for(scan, given);
   HypothesisResult result;
   int budget = settings.refit_budget;
   Fit fit{start, {}};
@@ -302,7 +308,7 @@ HypothesisResult fit_from_state(const FitModel& model, const ScanTarget& scan, c
   result.state = fit.state;
   result.score = score_fit(model, scan, fit.state);
   result.start = name;
-  result.bad = is_hopeless(result.score, settings);
+  judge(model, scan, settings, result);
   result.refits = settings.refit_budget - budget;
   return result;
 }
