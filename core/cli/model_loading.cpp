@@ -6,9 +6,9 @@
 #include "cli/paths.h"
 #include "io/file.h"
 #include "pipeline/calibrate.h"
+#include "pipeline/own_models.h"
 #include "pose/skeleton_prior.h"
 #include "smpl/read_model.h"
-#include "smpl/vposer.h"
 
 namespace vitruvian {
 namespace {
@@ -16,16 +16,12 @@ namespace {
 constexpr int kCalibrationBodies = 20;
 constexpr std::uint32_t kCalibrationSeed = 1;
 
-PosePrior read_prior(const std::string& path) { return read_pose_prior(FileBytes(path).bytes(), path); }
-
-/// A user's prior: one of ours, or a VPoser checkpoint, which takes the place of our autoencoder.
-PosePrior with_users_prior(PosePrior bundled, const std::string& path) {
+PosePrior prior_from(const PosePrior& bundled, const std::string& path) {
   const FileBytes file(path);
-  if (is_array_file(file.bytes())) return read_pose_prior(file.bytes(), path);
-  bundled.vae = read_vposer(file.bytes(), path);
-  bundled.sha256 = to_hex(sha256(file.bytes()));
-  return bundled;
+  return prior_with_file(bundled, {file.bytes(), path});
 }
+
+PosePrior read_prior(const std::string& path) { return read_pose_prior(FileBytes(path).bytes(), path); }
 
 }  // namespace
 
@@ -55,7 +51,7 @@ Models load_models(const ModelFiles& files, const std::vector<std::string>& data
   if (!files.dmpl.empty()) models.dmpl = file_info(files.dmpl);
   if (!files.prior.empty()) models.users_prior = file_info(files.prior);
   const PosePrior bundled = read_prior(find_data_file(data_folders, "pose_prior.vpp"));
-  const PosePrior chosen = files.prior.empty() ? bundled : with_users_prior(bundled, files.prior);
+  const PosePrior chosen = files.prior.empty() ? bundled : prior_from(bundled, files.prior);
   models.prior = prior_for_skeleton(chosen, models.body);
   if (models.body.family == "vitruvian") {
     const std::string path = find_data_file(data_folders, "landmarks.json");
