@@ -110,7 +110,11 @@ EMSCRIPTEN_KEEPALIVE const char* vitruvian_task_progress() {
   return guarded(
       [&] {
         const TaskProgress progress = open_session().task().progress();
-        const nlohmann::json json = {{"stage", progress.stage}, {"fraction", progress.fraction}};
+        const nlohmann::json json = {{"stage", progress.stage},
+                                     {"fraction", progress.fraction},
+                                     {"curve", progress.curve},
+                                     {"iteration", progress.iteration},
+                                     {"energy", progress.energy}};
         return kept(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
       },
       kNoText);
@@ -133,10 +137,32 @@ EMSCRIPTEN_KEEPALIVE int vitruvian_load_model(int part, std::byte* data, std::si
   const Buffer buffer(data, size);
   return guarded(
       [&] {
-        open_session().load(static_cast<ModelPart>(part), buffer, name);
+        open_session().models().load(static_cast<ModelPart>(part), buffer, name);
         return 1;
       },
       0);
+}
+
+/// Takes `data` (from malloc), a user's model file, over. @return 1 + its ModelFileKind; 0: failed.
+EMSCRIPTEN_KEEPALIVE int vitruvian_add_model(std::byte* data, std::size_t size, const char* name) {
+  Buffer buffer(data, size);
+  return guarded([&] { return 1 + static_cast<int>(open_session().models().add(std::move(buffer), name)); },
+                 0);
+}
+
+/// Puts the files that were added to use; with none, the bundled models. @param known  see
+/// ModelShelf::begin().
+EMSCRIPTEN_KEEPALIVE int vitruvian_use_models(const char* known) {
+  return guarded(
+      [&] {
+        open_session().use_models(known);
+        return 1;
+      },
+      0);
+}
+
+EMSCRIPTEN_KEEPALIVE const char* vitruvian_model_report() {
+  return guarded([&] { return kept(open_session().models().report()); }, kNoText);
 }
 
 /// @return 1 + the number of stages that still hold; 0: failed.

@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <chrono>
-#include <cstdlib>
 #include <utility>
 
 #include "base/sha256.h"
@@ -36,35 +35,19 @@ constexpr PipelineStage kStages[] = {PipelineStage::align, PipelineStage::keypoi
 
 }  // namespace
 
-Buffer::Buffer(Buffer&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
-
-Buffer& Buffer::operator=(Buffer&& other) noexcept {
-  std::swap(data_, other.data_);
-  std::swap(size_, other.size_);
-  return *this;
-}
-
-Buffer::~Buffer() { std::free(data_); }
-
 Session::~Session() { task_.stop(); }
 
-void Session::load(ModelPart part, const Buffer& file, const std::string& name) {
+void Session::use_models(const std::string& known_landmarks) {
+  task_.require_idle();
+  pipeline_.reset();
+  drop_result();
   editor_.reset();
-  switch (part) {
-    case ModelPart::body:
-      measured_.reset();
-      models_.body = read_body_model(file.bytes(), name);
-      return;
-    case ModelPart::prior:
-      models_.prior = read_pose_prior(file.bytes(), name);
-      return;
-    case ModelPart::landmarks:
-      models_.landmarks = landmarks_from_json(
-          std::string(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()), name);
-      return;
-  }
-  throw Error(ErrorCode::internal, "unknown model part");
+  request_.reset();
+  task_.start([this, known_landmarks] {
+    task_.execution().progress("model", -1);
+    models_.begin(known_landmarks, task_.execution());
+    advance();
+  });
 }
 
 void Session::open(Buffer file, std::string name) {
@@ -120,8 +103,12 @@ void Session::begin(int until, bool again) {
   if (!scan_) throw Error(ErrorCode::usage, "open a scan first");
   if (until < 0 || until >= kPipelineStageCount) throw Error(ErrorCode::internal, "unknown stage");
   until_ = kStages[until];
+  models_.abandon();
   if (!pipeline_) {
-    pipeline_ = std::make_unique<RegistrationPipeline>(models_, settings_, task_.execution());
+    pipeline_ = std::make_unique<RegistrationPipeline>(models_.models(), settings_, task_.execution());
+    pipeline_->on_energy([this](std::string_view curve, int iteration, double energy) {
+      task_.tell_energy(curve, iteration, energy);
+    });
     pipeline_->set_read_time(read_ms_);
   }
   // What a cancelled run left behind of a stage is worked again.
@@ -141,19 +128,24 @@ void Session::begin(int until, bool again) {
 void Session::resume() {
   if (!request_) throw Error(ErrorCode::internal, "no network request is open");
   task_.start([this] {
-    pipeline_->accept(reply_);
+    if (models_.under_way()) {
+      models_.accept(reply_);
+    } else {
+      pipeline_->accept(reply_);
+    }
     advance();
   });
 }
 
 void Session::advance() {
-  request_ = pipeline_->next_request(until_);
+  const bool at_models = models_.under_way() || !pipeline_;
+  request_ = at_models ? models_.next_request() : pipeline_->next_request(until_);
   reply_ = {};
   if (request_) {
     reply_.outputs.resize(request_->inputs.size());
     return;
   }
-  if (until_ != PipelineStage::fit || registration_) return;
+  if (at_models || until_ != PipelineStage::fit || registration_) return;
   registration_ = pipeline_->finish();
   keep_result();
 }
@@ -185,9 +177,10 @@ float* Session::reply_buffer(std::size_t input, std::size_t output, std::size_t 
 
 nlohmann::json Session::describe_pose() {
   const BodyState& state = pipeline_->initial_pose();
-  posed_vertices_ = posed_vertices<float>(models_.body, state);
-  const Faces& faces = models_.body.faces;
-  return {{"joints", describe_joints(models_.body, state)},
+  const BodyModel& body = models_.models().body;
+  posed_vertices_ = posed_vertices<float>(body, state);
+  const Faces& faces = body.faces;
+  return {{"joints", describe_joints(body, state)},
           {"body", array_reference(posed_vertices_.data(), posed_vertices_.size())},
           {"faces", array_reference(faces.data(), faces.size())}};
 }
@@ -218,7 +211,7 @@ std::string Session::findings_report() {
 std::string Session::edit(const std::string& request) {
   task_.require_idle();
   if (!scan_) throw Error(ErrorCode::usage, "open a scan first");
-  return text_of(editor_.answer(parse_json(request, "editor"), {models_, *scan_, shown_, settings_}));
+  return text_of(editor_.answer(parse_json(request, "editor"), {models_.models(), *scan_, shown_, settings_}));
 }
 
 std::string Session::files_report(const std::string& mesh_format) {
@@ -255,7 +248,7 @@ const MeasuredRegistration& Session::measured() {
   if (!measured_) {
     const std::string text = registration_json(*registration_, VITRUVIAN_VERSION, JsonStyle::pretty);
     measured_ = std::make_unique<MeasuredRegistration>(
-        *registration_, models_.body, registration_->offsets.cast<double>(),
+        *registration_, models_.models().body, registration_->offsets.cast<double>(),
         to_hex(sha256(std::as_bytes(std::span(text.data(), text.size())))));
     measured_->set_vertex_errors(registration_->vertex_error_mm);
     standing_vertices_ = measured_->standing_in_place().cast<float>();
@@ -266,7 +259,7 @@ const MeasuredRegistration& Session::measured() {
 std::string Session::measurements_report() {
   nlohmann::json report = describe_measurements(measured());
   report["standing"] = array_reference(standing_vertices_.data(), standing_vertices_.size());
-  report["faces"] = array_reference(models_.body.faces.data(), models_.body.faces.size());
+  report["faces"] = array_reference(models_.models().body.faces.data(), models_.models().body.faces.size());
   return text_of(report);
 }
 
@@ -279,7 +272,7 @@ std::string Session::measured_files_report(const std::string& format) {
 }
 
 std::string Session::pose_body(const std::string& parameters) {
-  posed_ = wasm::pose_body(models_.body, parameters);
+  posed_ = wasm::pose_body(models_.models().body, parameters);
   return text_of(describe_posed(posed_));
 }
 

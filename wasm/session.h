@@ -1,43 +1,23 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "buffer.h"
 #include "editor.h"
 #include "geometry/mesh.h"
 #include "io/scan.h"
 #include "measured/export_files.h"
-#include "pipeline/models.h"
+#include "model_shelf.h"
 #include "pipeline/pipeline.h"
 #include "task.h"
 #include "teaching_json.h"
 
 namespace vitruvian::wasm {
-
-/// A file that the page put into our memory; freed with free().
-class Buffer {
- public:
-  Buffer() = default;
-  Buffer(std::byte* data, std::size_t size) : data_(data), size_(size) {}
-  Buffer(Buffer&& other) noexcept;
-  Buffer& operator=(Buffer&& other) noexcept;
-  ~Buffer();
-
-  std::span<const std::byte> bytes() const { return {data_, size_}; }
-
- private:
-  std::byte* data_ = nullptr;
-  std::size_t size_ = 0;
-};
-
-/// Values are known to web/src/worker/core.ts.
-enum class ModelPart { body = 0, prior = 1, landmarks = 2 };
 
 /// What the page's worker holds: models, one scan, and what was found in it. Results of a task are described
 /// by JSON in which an array is `[address, number of elements]`; it stays valid until the next task starts.
@@ -48,8 +28,10 @@ class Session {
 
   Task& task() { return task_; }
 
-  /// Reads a model file. @throws Error(bad_model).
-  void load(ModelPart part, const Buffer& file, const std::string& name);
+  ModelShelf& models() { return models_; }
+  /// Starts to put the user's model files to use that were added to models(); asks for networks as begin()
+  /// does. All that was found with other models is dropped.
+  void use_models(const std::string& known_landmarks);
 
   /// Starts to read a scan; replaces the one before and all that was found in it.
   void open(Buffer file, std::string name);
@@ -87,7 +69,7 @@ class Session {
   std::string measured_files_report(const std::string& format);
 
   /// describe_body() of the model that is loaded.
-  std::string body_report() const { return describe_body(models_).dump(); }
+  std::string body_report() const { return describe_body(models_.models()).dump(); }
   /// Poses the body by hand, with or without a scan. @return describe_posed().
   std::string pose_body(const std::string& parameters);
   /// Starts the fit again with something changed, recorded. @param settings  as parse_lesson() reads them.
@@ -106,7 +88,7 @@ class Session {
   nlohmann::json describe_result() const;
 
   Task task_;
-  Models models_;
+  ModelShelf models_;
   std::shared_ptr<const Scan> scan_;
   double read_ms_ = 0;
   DecimatedMesh shown_;  ///< for the view, relative to the scan's origin

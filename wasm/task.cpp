@@ -11,9 +11,13 @@ namespace {
 
 #ifndef __EMSCRIPTEN_PTHREADS__
 // Without threads nobody can poll while the work runs: it tells the page itself.
-EM_JS(void, tell_progress, (const char* stage, double fraction), {
-  if (Module["onProgress"]) Module["onProgress"](UTF8ToString(stage), fraction);
-});
+EM_JS(void, tell_progress,
+      (const char* stage, double fraction, const char* curve, int iteration, double energy), {
+        if (Module["onProgress"])
+          Module["onProgress"](UTF8ToString(stage), fraction, UTF8ToString(curve), iteration, energy);
+      });
+/// Of each curve's iterations, one in so many is told.
+constexpr int kToldIterations = 10;
 #endif
 
 }  // namespace
@@ -21,11 +25,27 @@ EM_JS(void, tell_progress, (const char* stage, double fraction), {
 Task::Task(int threads) : execution_(threads) {
   execution_.on_progress([this](std::string_view stage, double fraction) {
     std::lock_guard lock(mutex_);
-    progress_ = {std::string(stage), fraction};
-#ifndef __EMSCRIPTEN_PTHREADS__
-    tell_progress(progress_.stage.c_str(), fraction);
-#endif
+    progress_.stage = stage;
+    progress_.fraction = fraction;
+    tell();
   });
+}
+
+void Task::tell_energy(std::string_view curve, int iteration, double energy) {
+  std::lock_guard lock(mutex_);
+  progress_.curve = curve;
+  progress_.iteration = iteration;
+  progress_.energy = energy;
+#ifndef __EMSCRIPTEN_PTHREADS__
+  if (iteration % kToldIterations == 1) tell();
+#endif
+}
+
+void Task::tell() const {
+#ifndef __EMSCRIPTEN_PTHREADS__
+  tell_progress(progress_.stage.c_str(), progress_.fraction, progress_.curve.c_str(), progress_.iteration,
+                progress_.energy);
+#endif
 }
 
 Task::~Task() { stop(); }

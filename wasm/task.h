@@ -3,6 +3,7 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "base/execution.h"
@@ -15,6 +16,9 @@ enum class TaskState { idle = 0, working = 1, done = 2, failed = 3 };
 struct TaskProgress {
   std::string stage;
   double fraction = -1;  ///< below 0: unknown
+  std::string curve;     ///< of the energy; empty: there is none
+  int iteration = 0;     ///< of the curve
+  double energy = 0;
 };
 
 struct TaskError {
@@ -29,6 +33,8 @@ class Task {
   ~Task();
 
   const Execution& execution() const { return execution_; }
+  /// An iteration's energy, for progress(). From the working thread.
+  void tell_energy(std::string_view curve, int iteration, double energy);
 
   /// @param work  may throw; an Error(cancelled) leaves the state `failed`.
   /// @throws Error(internal) while another task works.
@@ -44,6 +50,7 @@ class Task {
   TaskError error() const;  ///< of the last task that failed
 
  private:
+  void tell() const;
   void run(const std::function<void()>& work) noexcept;
   void finish(TaskState state, TaskError error);
 

@@ -24,11 +24,20 @@ Points3f columns_of(const Points3f& points, const std::vector<int>& index) {
   return result;
 }
 
-/// Passes an iteration on as the fraction done of a stage.
-EnergyCallback progress_of(const Execution& execution, const char* stage, double begin, double end,
-                           int iterations) {
-  return [=, &execution](int iteration, double) {
-    if (iteration % 10 == 0) execution.progress(stage, begin + (end - begin) * iteration / iterations);
+/// Part of a stage's progress that iterations of the solver make up, and the curve of their energy.
+struct Part {
+  const char* stage;
+  double begin, end;
+  const char* curve;
+};
+
+/// Passes an iteration on as the fraction done of a stage, and its energy.
+EnergyCallback each_of(const Execution& execution, const EnergyTrace& trace, const Part& part,
+                       int iterations) {
+  return [=, &execution, &trace](int iteration, double energy) {
+    if (iteration % 10 == 0)
+      execution.progress(part.stage, part.begin + (part.end - part.begin) * iteration / iterations);
+    if (trace) trace(part.curve, iteration, energy);
   };
 }
 
@@ -77,28 +86,30 @@ std::vector<int> rematch_regions(const Points3f& template_vertices, const Points
 }
 
 PaperFit paper_distance_fit(const FitModel& model, const Points3f& scan_points, const RegionLabels& regions,
-                            const BodyState& start, const Settings& settings, const Execution& execution) {
+                            const BodyState& start, const Settings& settings, const Execution& execution,
+                            const EnergyTrace& trace) {
   const PaperSolverOptions solver{settings.iterations, settings.adam_iterations};
   ChamferFitOptions weights;
   weights.distance = {settings.one_directional, settings.chunk};
   const ChamferDistance distance(scan_points, regions, weights.distance);
   return fit_chamfer(model.body, model.betas, distance, start, weights, solver, execution,
-                     progress_of(execution, "fit", 0, 1, solver.iterations));
+                     each_of(execution, trace, {"fit", 0, 1, "distance"}, solver.iterations));
 }
 
 PaperRefinement paper_correspondence_fit(const FitModel& model, const Points3f& scan_points,
                                          const RegionLabels& regions, const BodyState& start,
-                                         const Settings& settings, const Execution& execution) {
+                                         const Settings& settings, const Execution& execution,
+                                         const EnergyTrace& trace) {
   const PaperSolverOptions solver{settings.iterations, settings.adam_iterations};
   PaperRefinement result;
-  const auto pass = [&](const BodyState& from, double begin) {
+  const auto pass = [&](const BodyState& from, const Part& part) {
     result.matches =
         rematch_regions(posed_vertices<float>(model.body, from), scan_points, regions, execution);
     return fit_correspondences(model.body, model.betas, scan_points, result.matches, from, solver, execution,
-                               progress_of(execution, "refine", begin, begin + 0.5, solver.iterations));
+                               each_of(execution, trace, part, solver.iterations));
   };
-  result.first_pass = pass(start, 0);
-  result.second_pass = pass(result.first_pass.state, 0.5);
+  result.first_pass = pass(start, {"refine", 0, 0.5, "correspondence 1"});
+  result.second_pass = pass(result.first_pass.state, {"refine", 0.5, 1, "correspondence 2"});
   return result;
 }
 

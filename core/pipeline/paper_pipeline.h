@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "fit/chamfer.h"
@@ -24,10 +26,15 @@ namespace vitruvian {
 BodyState paper_pose(const FitModel& model, const std::vector<Keypoint>& keypoints,
                      const std::optional<Vec3d>& start_translation, const Execution& execution);
 
+/// Told after every iteration of the published solver: which curve ("distance", "correspondence 1" or
+/// "correspondence 2"), the iteration's number from 1, and the energy before it.
+using EnergyTrace = std::function<void(std::string_view curve, int iteration, double energy)>;
+
 /// Section 3.2, "Distance Minimization": (beta*, theta*) from a start. Progress: "fit".
 /// @param scan_points  3 x N, body frame, all of the scan's vertices.
 PaperFit paper_distance_fit(const FitModel& model, const Points3f& scan_points, const RegionLabels& regions,
-                            const BodyState& start, const Settings& settings, const Execution& execution);
+                            const BodyState& start, const Settings& settings, const Execution& execution,
+                            const EnergyTrace& trace = {});
 
 struct PaperRefinement {
   PaperFit first_pass;
@@ -39,7 +46,8 @@ struct PaperRefinement {
 /// Progress: "refine".
 PaperRefinement paper_correspondence_fit(const FitModel& model, const Points3f& scan_points,
                                          const RegionLabels& regions, const BodyState& start,
-                                         const Settings& settings, const Execution& execution);
+                                         const Settings& settings, const Execution& execution,
+                                         const EnergyTrace& trace = {});
 
 /// Correspondence rematching (section 3.3.1) with each region pair by itself.
 std::vector<int> rematch_regions(const Points3f& template_vertices, const Points3f& scan_points,

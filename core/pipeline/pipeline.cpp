@@ -269,11 +269,11 @@ void RegistrationPipeline::fit_as_published(Candidate& candidate) {
   clock_.enter(&Timing::fit);
   execution_.progress("fit", 0);
   const PaperFit distance =
-      paper_distance_fit(*fit_model_, points, regions_, candidate.initial, settings_, execution_);
+      paper_distance_fit(*fit_model_, points, regions_, candidate.initial, settings_, execution_, energy_);
   clock_.enter(&Timing::refine);
   execution_.progress("refine", 0);
   const PaperRefinement refined =
-      paper_correspondence_fit(*fit_model_, points, regions_, distance.state, settings_, execution_);
+      paper_correspondence_fit(*fit_model_, points, regions_, distance.state, settings_, execution_, energy_);
   candidate.fit.state = refined.second_pass.state;
   candidate.stature = standing_stature(models_.body, candidate.fit.state.betas);
 }

@@ -16,6 +16,7 @@
 #include "pipeline/given_keypoints.h"
 #include "pipeline/landmark_stage.h"
 #include "pipeline/models.h"
+#include "pipeline/paper_pipeline.h"
 #include "pipeline/prepared_scan.h"
 #include "pipeline/registration.h"
 #include "pipeline/stage.h"
@@ -53,6 +54,9 @@ class RegistrationPipeline {
   bool has_scan() const { return whole_ != nullptr; }
   /// @param read_ms  time spent on reading the file, for the report.
   void set_read_time(double read_ms) { read_ms_ = read_ms; }
+
+  /// Whom to tell each iteration's energy while the published solver works (on the working thread).
+  void on_energy(EnergyTrace trace) { energy_ = std::move(trace); }
 
   /// Takes other settings over and forgets the stages that they can alter. @throws as the constructor, with
   /// nothing changed.
@@ -149,6 +153,7 @@ class RegistrationPipeline {
   std::vector<Attempt> attempts_;
   Search search_;
 
+  EnergyTrace energy_;
   StageClock clock_;
   double read_ms_ = 0;
 };

@@ -1,8 +1,8 @@
 """Writes model files of the SMPL family from the default body, with what the published formulas make of them.
 
-usage: make_smpl_files.py OUT   (the default body from models/generated, or $VITRUVIAN_MODELS)
+usage: make_smpl_files.py OUT [own]   (the default body from models/generated, or $VITRUVIAN_MODELS)
 
-OUT/own_*: the default body itself at its own size. The others have the official files' sizes. NAME.expected.npz holds a
+OUT/own_*: the default body itself at its own size; with "own", only OUT/own_smpl.npz is made. The others have the official files' sizes. NAME.expected.npz holds a
 pose, coefficients (betas, then expression or soft tissue) and the posed vertices.
 """
 import glob
@@ -45,6 +45,9 @@ def expect(out, name, model, family, used, seed):
 def main():
     out = sys.argv[1]
     os.makedirs(out, exist_ok=True)
+    if sys.argv[2:] == ["own"]:
+        files.write_npz(os.path.join(out, "own_smpl.npz"), arrays.to_dense(made_body()), "smpl", compressed=True)
+        return
     done, made_from = os.path.join(out, "done"), made_of()
     if os.path.exists(done) and open(done, "rb").read() == made_from:
         return

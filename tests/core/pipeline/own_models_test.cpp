@@ -48,8 +48,7 @@ TEST(ModelFileKind, OtherFilesAreRefused) {
 TEST(OwnModels, TheDefaultBodyFromAFileKeepsItsLandmarksAndAsksNothing) {
   Models bundled;
   bundled.body = testing::default_body();
-  bundled.prior =
-      read_pose_prior(testing::file_bytes(VITRUVIAN_SOURCE_DIR "/models/pose_prior.vpp"), "prior");
+  bundled.prior = testing::shipped_prior();
   bundled.landmarks = {{11, 16, 13, Vec3d(0.1, -0.2, 0.03), 0.7}};
   const std::vector<std::byte> bytes = testing::file_bytes(VITRUVIAN_MODELS_DIR "/body.vbm");
   OwnModelFiles files;

@@ -36,8 +36,8 @@ function words({ code }: CoreError): [string, string] {
       ];
     case "bad_model":
       return [
-        "A model file is missing or damaged.",
-        "Reload the page; if that does not help, the site was not copied completely.",
+        "A model file cannot be used.",
+        "If it is a file of your own, see below what is wrong with it. If not, reload the page: the site was not copied completely.",
       ];
     case "network":
       return [

@@ -1,5 +1,6 @@
 // Typed messages between the page and the worker that holds the core.
 import type { EditorAnswer, EditorRequest } from "../editor/requests";
+import type { ModelsInfo } from "../models/types";
 import type { Measurements, Section } from "./measurements";
 import type { BodyDescription, BodyParameters, LessonData, LessonSettings, PosedBody } from "./teaching";
 import type { CoreStage, ErrorCode, Findings, OutputFile, ScanData, Settings } from "./types";
@@ -14,6 +15,14 @@ export interface Calls {
   /** Loads the core; `threads` = 1 loads the build without threads. */
   start: { args: { base: string; threads: number }; result: CoreInfo };
   open: { args: { file: Blob; name: string }; result: ScanData };
+  /**
+   * Puts a user's model files to use in place of the bundled ones; with none, the bundled ones again. `landmarks`: of an
+   * earlier answer. All that was found before is dropped.
+   */
+  models: {
+    args: { files: { file: Blob; name: string }[]; landmarks: ModelsInfo["landmarks"] };
+    result: ModelsInfo;
+  };
   /** Takes settings over; answers how many of the core's stages still hold. */
   configure: { args: { settings: Settings }; result: number };
   /** Works the opened scan up to a stage: what is not there yet, or with `again` that stage and all after it anew. */
@@ -49,6 +58,8 @@ export interface Progress {
   stage: string;
   /** 0..1, or null when unknown */
   fraction: number | null;
+  /** of the published solver's iteration at work */
+  energy?: { curve: string; iteration: number; value: number };
 }
 
 export type Reply =

@@ -4,6 +4,8 @@ import { droppedFiles, isPile } from "../batch/files";
 import * as queue from "../batch/queue";
 import { kCoreStages, kStages } from "../core/types";
 import { tool as editorTool } from "../editor/state";
+import { isModelFile } from "../models/own";
+import { addModel, restore } from "../models/use";
 import { cancel, openFile, register, run } from "./actions";
 import { About, Help } from "./Dialogs";
 import { Header } from "./Header";
@@ -26,6 +28,8 @@ export function App() {
   const picker = useRef<HTMLInputElement>(null);
   const dragged = useSignal(false);
   const pick = () => picker.current?.click();
+
+  useEffect(() => void restore(), []);
 
   useEffect(() => {
     const onKeyDown = (event: KeyboardEvent) => {
@@ -106,7 +110,7 @@ export function App() {
         onChange={(event) => {
           const file = event.currentTarget.files?.[0];
           event.currentTarget.value = "";
-          if (file) void openFile(file, file.name);
+          if (file) void open(file);
         }}
       />
       {dragged.value && <div class="drop-here">Drop scans anywhere</div>}
@@ -117,12 +121,19 @@ export function App() {
   );
 }
 
+/** A scan, or a model file of the user's. */
+async function open(file: File): Promise<void> {
+  if (!isModelFile(file.name)) return openFile(file, file.name);
+  state.stage.value = "pose";
+  await addModel(file, file.name);
+}
+
 /** One scan is opened; several, or a folder, make a batch. */
 async function dropped(transfer: DataTransfer): Promise<void> {
   const file = transfer.files[0];
   if (mode.value !== "batch" && !isPile(transfer)) {
     if (mode.value === "body") mode.value = "scan";
-    if (file) await openFile(file, file.name);
+    if (file) await open(file);
     return;
   }
   const files = droppedFiles(transfer);

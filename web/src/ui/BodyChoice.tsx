@@ -1,6 +1,8 @@
 import type { Gender } from "../core/types";
+import { ownBody } from "../models/own";
 import { change } from "./actions";
 import { Choice } from "./Choice";
+import { OwnModels } from "./OwnModels";
 import { busy, settings } from "./state";
 
 const BODIES: [Gender, string][] = [
@@ -11,12 +13,17 @@ const BODIES: [Gender, string][] = [
 
 export function BodyChoice() {
   return (
-    <Choice
-      label="Body model"
-      value={settings.value.gender}
-      options={BODIES}
-      disabled={busy.value !== null}
-      onChange={(gender) => void change({ gender })}
-    />
+    <>
+      {!ownBody.value && (
+        <Choice
+          label="Body model"
+          value={settings.value.gender}
+          options={BODIES}
+          disabled={busy.value !== null}
+          onChange={(gender) => void change({ gender })}
+        />
+      )}
+      <OwnModels />
+    </>
   );
 }

@@ -6,6 +6,7 @@ import { HandTools } from "../editor/HandTools";
 import { tool as editorTool } from "../editor/state";
 import { seconds } from "../result/format";
 import { cancel } from "./actions";
+import { EnergyPlot } from "./EnergyPlot";
 import { AlignPanel } from "./panels/AlignPanel";
 import { KeypointsPanel } from "./panels/KeypointsPanel";
 import { PosePanel } from "./panels/PosePanel";
@@ -57,6 +58,7 @@ function BusyBar() {
         <span class="quiet">{seconds(Math.max(now - busy.since, 0))}</span>
       </div>
       <progress aria-label={state.doing.value ?? ""} max={1} value={progress?.fraction ?? undefined} />
+      <EnergyPlot />
       <button type="button" onClick={cancel}>
         Cancel <kbd>Esc</kbd>
       </button>

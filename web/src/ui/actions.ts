@@ -13,7 +13,9 @@ import {
   type Stage,
 } from "../core/types";
 import type { AnswerTo, EditorRequest } from "../editor/requests";
+import * as own from "../models/own";
 import { save, zipped } from "../result/download";
+import * as energy from "./energy";
 import * as state from "./state";
 
 /** Time that a run has to obey a cancel before its worker is ended. */
@@ -25,6 +27,7 @@ const client = new CoreClient(
 );
 client.onProgress = (progress) => {
   state.progress.value = progress;
+  if (progress.energy) energy.add(progress.energy);
 };
 
 let opened: { file: Blob; name: string } | null = null;
@@ -43,6 +46,7 @@ async function ensureCore(): Promise<void> {
   scanIsInCore = false;
   await offlineReady();
   state.core.value = await client.call("start", { base: document.baseURI, threads: threadsWanted() });
+  await own.sendAgain(client);
 }
 
 /** Puts the opened file into a worker that does not hold it (yet, or any more). */
@@ -102,6 +106,15 @@ async function working(stage: Stage, work: () => Promise<void>): Promise<void> {
   }
 }
 
+/** Does something with the core as work of a stage; what it makes wrong of the findings is dropped. */
+export async function withCore(stage: Stage, work: (client: CoreClient) => Promise<void>): Promise<void> {
+  await working(stage, async () => {
+    await ensureCore();
+    await work(client);
+    if (scanIsInCore) await configure();
+  });
+}
+
 export async function openFile(file: Blob, name: string): Promise<void> {
   if (state.busy.value) return;
   batch(() => {
@@ -139,6 +152,7 @@ export async function run(until: CoreStage, show: Stage = until): Promise<void> 
     await ensureScan();
     const again = state.found.value[until] !== null;
     if (again) keep(kCoreStages.slice(0, kCoreStages.indexOf(until)));
+    energy.clear();
     const found = await client.call("run", { until, again });
     batch(() => {
       state.found.value = found;

@@ -60,6 +60,8 @@ const WORDS: Record<string, string> = {
   pose: "Posing the body",
   fit: "Fitting the body",
   refine: "Refining and measuring",
+  model: "Reading the body model",
+  calibrate: "Looking at the body model to learn where its landmarks are",
 };
 
 /** What is being done, in words; null when nothing is. */

@@ -1,5 +1,6 @@
 // Typed view of the WASM module: the only place that knows its entry points.
 import type { MeasurementsReport, Section } from "../core/measurements";
+import type { Progress } from "../core/messages";
 import {
   type AlignData,
   CoreError,
@@ -13,6 +14,7 @@ import {
   type Settings,
   type ViewData,
 } from "../core/types";
+import { kModelKinds, type ModelKind, type ModelsInfo } from "../models/types";
 import { load } from "./load";
 import type { Network } from "./networks";
 
@@ -27,7 +29,7 @@ type Text = number;
 
 interface Module {
   HEAPU8: Uint8Array;
-  onProgress?: (stage: string, fraction: number) => void;
+  onProgress?: (stage: string, fraction: number, curve: string, iteration: number, energy: number) => void;
   _malloc(size: number): number;
   _free(address: number): void;
   _vitruvian_version(): Text;
@@ -42,6 +44,9 @@ interface Module {
   _vitruvian_cancel(): void;
   _vitruvian_scan_report(): Text;
   _vitruvian_load_model(part: number, data: number, size: number, name: Text): number;
+  _vitruvian_add_model(data: number, size: number, name: Text): number;
+  _vitruvian_use_models(known: Text): number;
+  _vitruvian_model_report(): Text;
   _vitruvian_configure(settings: Text): number;
   _vitruvian_begin(until: number, again: number): number;
   _vitruvian_request_report(): Text;
@@ -76,6 +81,15 @@ export interface ScanReport {
   indices: ArrayReference;
 }
 
+/** TaskProgress in wasm/task.h. */
+interface TaskProgress {
+  stage: string;
+  fraction: number;
+  curve: string;
+  iteration: number;
+  energy: number;
+}
+
 interface NetworkRequest {
   network: Network;
   inputs: ArrayReference[];
@@ -101,7 +115,7 @@ export type RunNetwork = (network: Network, input: Float32Array) => Promise<Floa
 
 export class Core {
   private cancelled = false;
-  onProgress: (stage: string, fraction: number | null) => void = () => {};
+  onProgress: (stage: string, fraction: number | null, energy?: Progress["energy"]) => void = () => {};
 
   private constructor(
     private readonly module: Module,
@@ -117,7 +131,8 @@ export class Core {
         throw new CoreError("network", `the core could not be loaded: ${error}`);
       });
     const core = new Core(module, module._vitruvian_has_threads() ? threads : 1);
-    module.onProgress = (stage, fraction) => core.report(stage, fraction);
+    module.onProgress = (stage, fraction, curve, iteration, energy) =>
+      core.report({ stage, fraction, curve, iteration, energy });
     core.check(module._vitruvian_create(core.threads));
     return core;
   }
@@ -144,7 +159,7 @@ export class Core {
 
   /** Streams the file into the module's memory and reads it there. */
   async open(file: Blob, name: string): Promise<ScanReport> {
-    const address = await this.store(file);
+    const address = await this.store(file, "Loading the scan");
     this.withText(name, (title) => this.check(this.module._vitruvian_open(address, file.size, title)));
     await this.finished();
     return this.json<ScanReport>(this.module._vitruvian_scan_report());
@@ -164,6 +179,27 @@ export class Core {
     }
   }
 
+  /** Puts a user's model files to use, or the bundled ones again. @param known landmarks learnt before */
+  async useModels(
+    files: readonly { file: Blob; name: string }[],
+    known: ModelsInfo["landmarks"],
+    runNetwork: RunNetwork,
+  ): Promise<ModelsInfo> {
+    this.cancelled = false;
+    const kinds: ModelKind[] = [];
+    for (const { file, name } of files) {
+      const address = await this.store(file, "Loading the model");
+      const kind = this.withText(name, (title) =>
+        this.check(this.module._vitruvian_add_model(address, file.size, title)),
+      );
+      kinds.push(kModelKinds[kind - 1]!);
+    }
+    this.withText(JSON.stringify(known), (text) => this.check(this.module._vitruvian_use_models(text)));
+    await this.answerAll(runNetwork, false);
+    const info = this.json<Omit<ModelsInfo, "kinds">>(this.module._vitruvian_model_report());
+    return { ...info, kinds };
+  }
+
   /** Takes settings over. @returns how many of kCoreStages still hold. @throws CoreError */
   configure(settings: Settings): number {
     const answer = this.withText(JSON.stringify(settings), (text) =>
@@ -176,13 +212,7 @@ export class Core {
   async run(until: CoreStage, again: boolean, runNetwork: RunNetwork): Promise<FindingsReport> {
     this.cancelled = false;
     this.check(this.module._vitruvian_begin(kCoreStages.indexOf(until), Number(again)));
-    for (;;) {
-      await this.finished();
-      const request = this.json<NetworkRequest | null>(this.module._vitruvian_request_report());
-      if (!request) break;
-      await this.answer(request, runNetwork);
-      this.check(this.module._vitruvian_resume());
-    }
+    await this.answerAll(runNetwork, true);
     return this.json<FindingsReport>(this.module._vitruvian_findings_report());
   }
 
@@ -232,10 +262,25 @@ export class Core {
     return this.json<T>(this.module._vitruvian_lesson_report());
   }
 
-  private async answer({ network, inputs }: NetworkRequest, runNetwork: RunNetwork): Promise<void> {
+  /** Runs the networks that the task under way asks for, until it asks no more. @param told with progress */
+  private async answerAll(runNetwork: RunNetwork, told: boolean): Promise<void> {
+    for (;;) {
+      await this.finished();
+      const request = this.json<NetworkRequest | null>(this.module._vitruvian_request_report());
+      if (!request) return;
+      await this.answer(request, runNetwork, told);
+      this.check(this.module._vitruvian_resume());
+    }
+  }
+
+  private async answer(
+    { network, inputs }: NetworkRequest,
+    runNetwork: RunNetwork,
+    told: boolean,
+  ): Promise<void> {
     for (const [i, input] of inputs.entries()) {
       this.checkCancelled();
-      this.onProgress("detect", i / inputs.length);
+      if (told) this.onProgress("detect", i / inputs.length);
       const outputs = await runNetwork(network, this.floats(input));
       for (const [j, output] of outputs.entries()) {
         const address = this.check(this.module._vitruvian_reply_buffer(i, j, output.length)) >>> 0;
@@ -286,7 +331,7 @@ export class Core {
     return copy;
   }
 
-  private async store(file: Blob): Promise<number> {
+  private async store(file: Blob, doing: string): Promise<number> {
     const address = this.allocate(file.size);
     try {
       let offset = 0;
@@ -296,7 +341,7 @@ export class Core {
         if (done) break;
         this.memory.set(value, address + offset);
         offset += value.length;
-        this.onProgress("Loading the scan", offset / file.size);
+        this.onProgress(doing, offset / file.size);
       }
       return address;
     } catch (error) {
@@ -340,13 +385,14 @@ export class Core {
       const state = this.module._vitruvian_task_state();
       if (state === FAILED) throw this.error(this.check(this.module._vitruvian_task_error()));
       if (state !== WORKING) return;
-      const { stage, fraction } = JSON.parse(this.text(this.check(this.module._vitruvian_task_progress())));
-      if (stage) this.report(stage, fraction);
+      this.report(this.json<TaskProgress>(this.module._vitruvian_task_progress()));
       await new Promise((resolve) => setTimeout(resolve, POLL_MS));
     }
   }
 
-  private report(stage: string, fraction: number): void {
-    this.onProgress(stage, fraction < 0 ? null : fraction);
+  private report({ stage, fraction, curve, iteration, energy }: TaskProgress): void {
+    if (!stage) return;
+    const told = curve ? { curve, iteration, value: energy } : undefined;
+    this.onProgress(stage, fraction < 0 ? null : fraction, told);
   }
 }

@@ -1,5 +1,5 @@
 // The worker: holds the core and the networks, answers the page's calls one after the other (a cancel at once).
-import type { Calls, Kind, Reply, Request } from "../core/messages";
+import type { Calls, Kind, Progress, Reply, Request } from "../core/messages";
 import { CoreError, type Findings, type ScanData } from "../core/types";
 import { Core } from "./core";
 import { answerEditor } from "./editor";
@@ -41,8 +41,8 @@ async function prepare(core: Core): Promise<Networks> {
   return networks;
 }
 
-function tell(stage: string, fraction: number | null): void {
-  scope.postMessage({ progress: { stage, fraction } });
+function tell(stage: string, fraction: number | null, energy?: Progress["energy"]): void {
+  scope.postMessage({ progress: { stage, fraction, ...(energy && { energy }) } });
 }
 
 const handlers: Handlers = {
@@ -73,6 +73,19 @@ const handlers: Handlers = {
         indices: core.integers(report.indices),
       },
     };
+  },
+
+  async models({ files, landmarks }) {
+    const core = theCore();
+    const networks = await prepared();
+    try {
+      return await core.useModels(files, landmarks, (network, input) => networks.run(network, input));
+    } catch (error) {
+      const known = toCoreError(error);
+      // These speak of scans elsewhere.
+      if (known.code !== "bad_file" && known.code !== "unsupported_format") throw known;
+      throw new CoreError("bad_model", known.message);
+    }
   },
 
   async configure({ settings }) {

@@ -6,7 +6,6 @@ import { found, scan } from "../state";
 const degrees = (radians: number) => `${Math.round((radians * 180) / Math.PI)}°`;
 
 export function PosePanel() {
-  if (!scan.value) return <p class="quiet">Open a scan first.</p>;
   const { pose } = found.value;
   return (
     <>
@@ -14,7 +13,7 @@ export function PosePanel() {
         A body posed by the keypoints and by what poses people take, before it is fitted to the surface.
       </p>
       <BodyChoice />
-      <RunStage stage="pose" />
+      {scan.value ? <RunStage stage="pose" /> : <p class="quiet">Open a scan first.</p>}
       {pose && (
         <table>
           <caption>Turn of each joint against its parent; the skeleton is drawn in the view</caption>

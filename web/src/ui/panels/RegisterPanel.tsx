@@ -1,9 +1,10 @@
 import { seconds } from "../../result/format";
 import { BodyChoice } from "../BodyChoice";
 import { DetailChoice } from "../DetailChoice";
+import { EnergyPlot } from "../EnergyPlot";
 import { MethodChoice } from "../MethodChoice";
 import { RunStage } from "../RunStage";
-import { result, scan } from "../state";
+import { busy, result, scan } from "../state";
 import { ViewControls } from "../ViewControls";
 
 /** Entries of timing_ms, in the order of the work. */
@@ -33,6 +34,7 @@ export function RegisterPanel() {
       <MethodChoice />
       <DetailChoice />
       <RunStage stage="register" />
+      {busy.value === null && <EnergyPlot />}
       {registered && <ViewControls />}
       {registered && (
         <table>

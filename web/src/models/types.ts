@@ -1,0 +1,19 @@
+/** What a user's model file is for: ModelFileKind in core/pipeline/own_models.h, in its order. */
+export const kModelKinds = ["body", "soft tissue", "prior"] as const;
+export type ModelKind = (typeof kModelKinds)[number];
+
+/** The models that a registration uses. */
+export interface ModelsInfo {
+  name: string;
+  family: string;
+  vertices: number;
+  betas: number;
+  joints: number;
+  sha256: string;
+  /** whether a user's file is among them */
+  own: boolean;
+  /** where landmarks lie on a user's body model, to be given back for the same model; null: not learnt */
+  landmarks: { sha256: string; text: string } | null;
+  /** of each of the files that were given */
+  kinds: ModelKind[];
+}
