@@ -26,8 +26,10 @@ EM_JS(double, renewed_memory_size, (), { return HEAPU8.length; });
 using vitruvian::Error;
 using vitruvian::ErrorCode;
 using vitruvian::wasm::Buffer;
+using vitruvian::wasm::EnergyPoint;
 using vitruvian::wasm::ModelPart;
 using vitruvian::wasm::Session;
+using vitruvian::wasm::Task;
 using vitruvian::wasm::TaskError;
 using vitruvian::wasm::TaskProgress;
 
@@ -109,12 +111,14 @@ EMSCRIPTEN_KEEPALIVE int vitruvian_task_state() {
 EMSCRIPTEN_KEEPALIVE const char* vitruvian_task_progress() {
   return guarded(
       [&] {
-        const TaskProgress progress = open_session().task().progress();
-        const nlohmann::json json = {{"stage", progress.stage},
-                                     {"fraction", progress.fraction},
-                                     {"curve", progress.curve},
-                                     {"iteration", progress.iteration},
-                                     {"energy", progress.energy}};
+        Task& task = open_session().task();
+        const TaskProgress progress = task.progress();
+        nlohmann::json energies = nlohmann::json::array();
+        for (const EnergyPoint& point : task.take_energies())
+          energies.push_back(
+              {{"curve", point.curve}, {"iteration", point.iteration}, {"value", point.energy}});
+        const nlohmann::json json = {
+            {"stage", progress.stage}, {"fraction", progress.fraction}, {"energies", energies}};
         return kept(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
       },
       kNoText);

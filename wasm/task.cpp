@@ -11,13 +11,12 @@ namespace {
 
 #ifndef __EMSCRIPTEN_PTHREADS__
 // Without threads nobody can poll while the work runs: it tells the page itself.
-EM_JS(void, tell_progress,
-      (const char* stage, double fraction, const char* curve, int iteration, double energy), {
-        if (Module["onProgress"])
-          Module["onProgress"](UTF8ToString(stage), fraction, UTF8ToString(curve), iteration, energy);
-      });
-/// Of each curve's iterations, one in so many is told.
-constexpr int kToldIterations = 10;
+EM_JS(void, tell_progress, (const char* stage, double fraction), {
+  if (Module["onProgress"]) Module["onProgress"](UTF8ToString(stage), fraction);
+});
+EM_JS(void, tell_energy_point, (const char* curve, int iteration, double energy), {
+  if (Module["onEnergy"]) Module["onEnergy"](UTF8ToString(curve), iteration, energy);
+});
 #endif
 
 }  // namespace
@@ -25,27 +24,25 @@ constexpr int kToldIterations = 10;
 Task::Task(int threads) : execution_(threads) {
   execution_.on_progress([this](std::string_view stage, double fraction) {
     std::lock_guard lock(mutex_);
-    progress_.stage = stage;
-    progress_.fraction = fraction;
-    tell();
+    progress_ = {std::string(stage), fraction};
+#ifndef __EMSCRIPTEN_PTHREADS__
+    tell_progress(progress_.stage.c_str(), fraction);
+#endif
   });
 }
 
 void Task::tell_energy(std::string_view curve, int iteration, double energy) {
+#ifdef __EMSCRIPTEN_PTHREADS__
   std::lock_guard lock(mutex_);
-  progress_.curve = curve;
-  progress_.iteration = iteration;
-  progress_.energy = energy;
-#ifndef __EMSCRIPTEN_PTHREADS__
-  if (iteration % kToldIterations == 1) tell();
+  energies_.push_back({std::string(curve), iteration, energy});
+#else
+  tell_energy_point(std::string(curve).c_str(), iteration, energy);
 #endif
 }
 
-void Task::tell() const {
-#ifndef __EMSCRIPTEN_PTHREADS__
-  tell_progress(progress_.stage.c_str(), progress_.fraction, progress_.curve.c_str(), progress_.iteration,
-                progress_.energy);
-#endif
+std::vector<EnergyPoint> Task::take_energies() {
+  std::lock_guard lock(mutex_);
+  return std::exchange(energies_, {});
 }
 
 Task::~Task() { stop(); }

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "base/execution.h"
 
@@ -16,9 +17,13 @@ enum class TaskState { idle = 0, working = 1, done = 2, failed = 3 };
 struct TaskProgress {
   std::string stage;
   double fraction = -1;  ///< below 0: unknown
-  std::string curve;     ///< of the energy; empty: there is none
-  int iteration = 0;     ///< of the curve
-  double energy = 0;
+};
+
+/// An iteration of the published solver.
+struct EnergyPoint {
+  std::string curve;
+  int iteration;
+  double energy;
 };
 
 struct TaskError {
@@ -33,8 +38,11 @@ class Task {
   ~Task();
 
   const Execution& execution() const { return execution_; }
-  /// An iteration's energy, for progress(). From the working thread.
+  /// Keeps an iteration's energy for take_energies(), or tells the page where there are no threads. From the
+  /// working thread.
   void tell_energy(std::string_view curve, int iteration, double energy);
+  /// What was told since the last call.
+  std::vector<EnergyPoint> take_energies();
 
   /// @param work  may throw; an Error(cancelled) leaves the state `failed`.
   /// @throws Error(internal) while another task works.
@@ -50,7 +58,6 @@ class Task {
   TaskError error() const;  ///< of the last task that failed
 
  private:
-  void tell() const;
   void run(const std::function<void()>& work) noexcept;
   void finish(TaskState state, TaskError error);
 
@@ -58,6 +65,7 @@ class Task {
   mutable std::mutex mutex_;
   TaskState state_ = TaskState::idle;
   TaskProgress progress_;
+  std::vector<EnergyPoint> energies_;
   TaskError error_;
   std::thread thread_;
 };

@@ -99,7 +99,11 @@ describe("registering the sample scan", () => {
     await page.getByLabel("Of these by Adam").press("Tab");
     await page.keyboard.press("r");
     await verdict(page);
+    await page.keyboard.press("5");
+    const plot = page.getByRole("img", { name: /^Energy of the correspondence 2 fit: \S+ at iteration 12$/ });
+    expect(await plot.locator("polyline").count()).toBe(3);
     const folder = nativeFolder("--method", "paper", "--iterations", "12", "--adam-iterations", "8");
+    await page.keyboard.press("6");
     const ours = registrationOf(await downloaded(page, "registration.json"));
     const native = registrationOf(readFileSync(join(folder, "registration.json")));
     // The published stages stop after a number of steps, not where the body fits best, so that the smallest

@@ -53,13 +53,20 @@ export type Kind = keyof Calls;
 
 export type Request = { [K in Kind]: { id: number; kind: K; args: Calls[K]["args"] } }[Kind];
 
+/** An iteration of the published solver. */
+export interface EnergyPoint {
+  curve: string;
+  iteration: number;
+  value: number;
+}
+
 export interface Progress {
   /** a stage of the core (read, align, project, detect, pose, fit, refine) or words for the user */
   stage: string;
   /** 0..1, or null when unknown */
   fraction: number | null;
-  /** of the published solver's iteration at work */
-  energy?: { curve: string; iteration: number; value: number };
+  /** of the published solver's iterations since the last report */
+  energies?: EnergyPoint[];
 }
 
 export type Reply =

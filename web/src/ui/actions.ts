@@ -27,7 +27,7 @@ const client = new CoreClient(
 );
 client.onProgress = (progress) => {
   state.progress.value = progress;
-  if (progress.energy) energy.add(progress.energy);
+  if (progress.energies) energy.add(progress.energies);
 };
 
 let opened: { file: Blob; name: string } | null = null;

@@ -1,5 +1,6 @@
 // The published solver's energy while it works: one curve for each of its parts.
 import { signal } from "@preact/signals";
+import type { EnergyPoint } from "../core/messages";
 
 export interface Curve {
   name: string;
@@ -8,7 +9,7 @@ export interface Curve {
 }
 
 /** More points than can be told apart are thinned to half. */
-const MOST = 400;
+const MOST = 500;
 
 export const curves = signal<readonly Curve[]>([]);
 
@@ -16,12 +17,18 @@ export function clear(): void {
   curves.value = [];
 }
 
-export function add({ curve, iteration, value }: { curve: string; iteration: number; value: number }): void {
-  const known = curves.value.find(({ name }) => name === curve);
-  const last = known?.points.at(-1);
-  if (last && last.iteration >= iteration) return;
-  let points = [...(known?.points ?? []), { iteration, value }];
-  if (points.length > MOST) points = points.filter((_, i) => i % 2 === 0 || i === points.length - 1);
-  const others = curves.value.filter(({ name }) => name !== curve);
-  curves.value = [...others, { name: curve, points }];
+export function add(told: readonly EnergyPoint[]): void {
+  const found = new Map(curves.value.map(({ name, points }) => [name, [...points]]));
+  for (const { curve, iteration, value } of told) {
+    const points = found.get(curve) ?? [];
+    points.push({ iteration, value });
+    found.set(curve, points);
+  }
+  curves.value = [...found].map(([name, points]) => ({ name, points: thinned(points) }));
+}
+
+/** Every other point, the last one kept, until they are few enough. */
+export function thinned<T>(points: T[]): T[] {
+  if (points.length <= MOST) return points;
+  return thinned(points.filter((_, i) => i % 2 === 0 || i === points.length - 1));
 }

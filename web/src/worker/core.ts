@@ -1,6 +1,6 @@
 // Typed view of the WASM module: the only place that knows its entry points.
 import type { MeasurementsReport, Section } from "../core/measurements";
-import type { Progress } from "../core/messages";
+import type { EnergyPoint } from "../core/messages";
 import {
   type AlignData,
   CoreError,
@@ -29,7 +29,8 @@ type Text = number;
 
 interface Module {
   HEAPU8: Uint8Array;
-  onProgress?: (stage: string, fraction: number, curve: string, iteration: number, energy: number) => void;
+  onProgress?: (stage: string, fraction: number) => void;
+  onEnergy?: (curve: string, iteration: number, value: number) => void;
   _malloc(size: number): number;
   _free(address: number): void;
   _vitruvian_version(): Text;
@@ -85,9 +86,7 @@ export interface ScanReport {
 interface TaskProgress {
   stage: string;
   fraction: number;
-  curve: string;
-  iteration: number;
-  energy: number;
+  energies: EnergyPoint[];
 }
 
 interface NetworkRequest {
@@ -115,7 +114,7 @@ export type RunNetwork = (network: Network, input: Float32Array) => Promise<Floa
 
 export class Core {
   private cancelled = false;
-  onProgress: (stage: string, fraction: number | null, energy?: Progress["energy"]) => void = () => {};
+  onProgress: (stage: string, fraction: number | null, energies?: EnergyPoint[]) => void = () => {};
 
   private constructor(
     private readonly module: Module,
@@ -131,8 +130,14 @@ export class Core {
         throw new CoreError("network", `the core could not be loaded: ${error}`);
       });
     const core = new Core(module, module._vitruvian_has_threads() ? threads : 1);
-    module.onProgress = (stage, fraction, curve, iteration, energy) =>
-      core.report({ stage, fraction, curve, iteration, energy });
+    // Without threads the core calls while it works; with them finished() asks.
+    let latest = { stage: "", fraction: -1 };
+    module.onProgress = (stage, fraction) => {
+      latest = { stage, fraction };
+      core.report({ ...latest, energies: [] });
+    };
+    module.onEnergy = (curve, iteration, value) =>
+      core.report({ ...latest, energies: [{ curve, iteration, value }] });
     core.check(module._vitruvian_create(core.threads));
     return core;
   }
@@ -383,16 +388,15 @@ export class Core {
   private async finished(): Promise<void> {
     for (;;) {
       const state = this.module._vitruvian_task_state();
+      this.report(this.json<TaskProgress>(this.module._vitruvian_task_progress()));
       if (state === FAILED) throw this.error(this.check(this.module._vitruvian_task_error()));
       if (state !== WORKING) return;
-      this.report(this.json<TaskProgress>(this.module._vitruvian_task_progress()));
       await new Promise((resolve) => setTimeout(resolve, POLL_MS));
     }
   }
 
-  private report({ stage, fraction, curve, iteration, energy }: TaskProgress): void {
+  private report({ stage, fraction, energies }: TaskProgress): void {
     if (!stage) return;
-    const told = curve ? { curve, iteration, value: energy } : undefined;
-    this.onProgress(stage, fraction < 0 ? null : fraction, told);
+    this.onProgress(stage, fraction < 0 ? null : fraction, energies);
   }
 }

@@ -1,5 +1,5 @@
 // The worker: holds the core and the networks, answers the page's calls one after the other (a cancel at once).
-import type { Calls, Kind, Progress, Reply, Request } from "../core/messages";
+import type { Calls, EnergyPoint, Kind, Reply, Request } from "../core/messages";
 import { CoreError, type Findings, type ScanData } from "../core/types";
 import { Core } from "./core";
 import { answerEditor } from "./editor";
@@ -41,8 +41,8 @@ async function prepare(core: Core): Promise<Networks> {
   return networks;
 }
 
-function tell(stage: string, fraction: number | null, energy?: Progress["energy"]): void {
-  scope.postMessage({ progress: { stage, fraction, ...(energy && { energy }) } });
+function tell(stage: string, fraction: number | null, energies: EnergyPoint[] = []): void {
+  scope.postMessage({ progress: { stage, fraction, ...(energies.length > 0 && { energies }) } });
 }
 
 const handlers: Handlers = {
