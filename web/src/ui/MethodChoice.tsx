@@ -58,16 +58,22 @@ function Iterations({ method }: { method: keyof typeof ITERATIONS }) {
         label="Iterations of each stage"
         value={iterations}
         least={1}
-        onChange={(value) => void change({ iterations: value })}
+        onChange={(value) => void changeNext({ iterations: value })}
       />
       <Count
         label="Of these by Adam, the rest by L-BFGS"
         value={adam_iterations}
         least={0}
-        onChange={(value) => void change({ adam_iterations: value })}
+        onChange={(value) => void changeNext({ adam_iterations: value })}
       />
     </>
   );
+}
+
+/** Changes settings as soon as the change before has been taken over. */
+async function changeNext(changed: Partial<Settings>): Promise<void> {
+  while (busy.value) await new Promise((resolve) => setTimeout(resolve, 20));
+  await change(changed);
 }
 
 /** The numbers that were set by hand. */
@@ -95,7 +101,8 @@ function Count({ label, value, least, onChange }: CountProps) {
         max={MOST}
         step={1}
         value={value}
-        disabled={busy.value !== null}
+        // Not disabled: taking over the field before must not take the focus away.
+        readOnly={busy.value !== null}
         onChange={({ currentTarget: input }) => {
           if (input.value !== "" && input.checkValidity()) onChange(input.valueAsNumber);
           else input.value = String(value);
