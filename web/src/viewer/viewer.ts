@@ -49,6 +49,8 @@ export class Viewer {
   private readonly grid = new GridHelper(4, 16);
   private readonly observer: ResizeObserver;
   private options: ViewOptions | null = null;
+  /** Whether the user has left the camera where fit() put it: it then follows the window's size. */
+  private fitted = true;
   private legendMaximumMm = 10;
   private errorsMm: Float32Array | null = null;
   /** @param context of the canvas, from createContext(). */
@@ -76,8 +78,11 @@ export class Viewer {
       this.grid,
     );
     this.grid.visible = false;
-    this.observer = new ResizeObserver(() => this.request());
+    this.observer = new ResizeObserver(() => (this.fitted ? this.fit() : this.request()));
     this.observer.observe(canvas);
+    this.viewpoint.controls.addEventListener("start", () => {
+      this.fitted = false;
+    });
     this.look("front");
   }
 
@@ -213,17 +218,20 @@ export class Viewer {
       if (root.visible && root.children.length > 0) box.union(new Box3().setFromObject(root));
     }
     this.viewpoint.fit(box, this.aspect());
+    this.fitted = true;
     this.request();
   }
 
   /** Turns the camera round the body by angles in radians. */
   orbit(azimuth: number, elevation: number): void {
+    this.fitted = false;
     this.viewpoint.orbit(azimuth, elevation);
     this.request();
   }
 
   /** @param factor above 1: nearer */
   zoom(factor: number): void {
+    this.fitted = false;
     this.viewpoint.zoom(factor);
     this.request();
   }
