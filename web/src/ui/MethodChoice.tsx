@@ -1,3 +1,4 @@
+import { useSignal } from "@preact/signals";
 import type { Settings } from "../core/types";
 import { change } from "./actions";
 import { Choice } from "./Choice";
@@ -92,6 +93,8 @@ interface CountProps {
 }
 
 function Count({ label, value, least, onChange }: CountProps) {
+  /** What is being typed: the page may be drawn anew meanwhile. */
+  const draft = useSignal<string | null>(null);
   return (
     <label class="count">
       {label}
@@ -100,12 +103,15 @@ function Count({ label, value, least, onChange }: CountProps) {
         min={least}
         max={MOST}
         step={1}
-        value={value}
-        // Not disabled: taking over the field before must not take the focus away.
-        readOnly={busy.value !== null}
+        value={draft.value ?? value}
+        onInput={({ currentTarget }) => {
+          draft.value = currentTarget.value;
+        }}
         onChange={({ currentTarget: input }) => {
-          if (input.value !== "" && input.checkValidity()) onChange(input.valueAsNumber);
-          else input.value = String(value);
+          const accepted = input.value !== "" && input.checkValidity();
+          if (accepted) onChange(input.valueAsNumber);
+          draft.value = null;
+          if (!accepted) input.value = String(value);
         }}
       />
     </label>
