@@ -80,8 +80,8 @@ void add_sections(MeasuredRegistration& measured, const MeasureArguments& argume
     measured.add_section(section_at(measured.scanned(), request));
   }
   for (const ProfileRequest& request : arguments.profiles) {
-    for (SectionResult& section : section_profile(measured.scanned(), request.segment, request.count)) {
-      measured.add_section(std::move(section));
+    for (const SectionResult& section : section_profile(measured.scanned(), request.segment, request.count)) {
+      measured.add_section(section);
     }
   }
 }

@@ -112,8 +112,8 @@ std::vector<Vec3d> MeasuredRegistration::course_in_scan(const Dimension& dimensi
 
 std::vector<ProfileSection> MeasuredRegistration::profile(int segment, int count) const {
   std::vector<ProfileSection> profile;
-  for (SectionResult& result : section_profile(scanned_, segment, count)) {
-    ProfileSection section{std::move(result), {}};
+  for (const SectionResult& result : section_profile(scanned_, segment, count)) {
+    ProfileSection section{result, {}};
     if (const auto loop = segment_section(scanned_, segment, section.result.t)) {
       for (const SectionPoint& point : loop->points) section.course.push_back(in_scan(point.position));
       if (loop->closed && !section.course.empty()) section.course.push_back(section.course.front());

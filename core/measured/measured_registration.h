@@ -33,7 +33,7 @@ class MeasuredRegistration {
   void compare(const SurfaceMeasurement& surface);
   /// The vertices' errors alone, mm, V.
   void set_vertex_errors(std::vector<float> error_mm) { vertex_error_mm_ = std::move(error_mm); }
-  void add_section(SectionResult section) { report_.sections.push_back(std::move(section)); }
+  void add_section(const SectionResult& section) { report_.sections.push_back(section); }
 
   const Registration& registration() const { return registration_; }
   const BodyModel& body() const { return model_.body(); }
