@@ -53,9 +53,11 @@ async function ensureCore(): Promise<void> {
 async function ensureScan(): Promise<void> {
   await ensureCore();
   if (scanIsInCore || !opened) return;
-  state.scan.value = await client.call("open", opened);
+  const scan = await client.call("open", opened);
   scanIsInCore = true;
   await configure();
+  // Shown only now: who sees it may ask for the next thing at once.
+  state.scan.value = scan;
 }
 
 /** Hands the settings to the core; what they make wrong is dropped and marked as stale. */
@@ -82,8 +84,12 @@ function dropAll(): void {
   });
 }
 
+/** Settings on their way to the core: short, so that what is asked for meanwhile waits instead of being dropped. */
+let settling: Promise<void> = Promise.resolve();
+
 /** Runs `work` as the stage's; keeps busy, progress and problem right. */
 async function working(stage: Stage, work: () => Promise<void>): Promise<void> {
+  await settling;
   if (state.busy.value) return;
   batch(() => {
     state.busy.value = { stage, since: performance.now() };
@@ -232,7 +238,8 @@ export async function change(settings: Partial<Settings>): Promise<void> {
   state.settings.value = { ...state.settings.value, ...settings };
   if (!scanIsInCore) return;
   const aligned = state.found.value.align !== null;
-  await working(state.stage.value, configure);
+  settling = working(state.stage.value, configure);
+  await settling;
   if (aligned && !state.found.value.align && !state.problem.value) await run("align", state.stage.value);
 }
 
