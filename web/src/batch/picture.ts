@@ -3,7 +3,6 @@ import {
   AmbientLight,
   Box3,
   BufferAttribute,
-  BufferGeometry,
   Color,
   DirectionalLight,
   DoubleSide,
@@ -21,6 +20,7 @@ import {
 } from "three";
 import type { Mesh as MeshData, ScanData } from "../core/types";
 import { viridis } from "../result/colours";
+import { geometryOf } from "../viewer/parts";
 
 const SIDE = 160;
 const COLOUR = 0xb9bcc2;
@@ -98,15 +98,4 @@ export function createPictures(): Pictures {
 function standing(object: Mesh | Points): Matrix4 {
   const size = new Box3().setFromObject(object).getSize(new Vector3());
   return size.z > size.y ? new Matrix4().makeRotationX(-Math.PI / 2) : new Matrix4();
-}
-
-function geometryOf({ positions, normals, indices }: MeshData): BufferGeometry {
-  const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(positions, 3));
-  if (indices.length > 0) {
-    geometry.setIndex(new BufferAttribute(indices, 1));
-    if (normals) geometry.setAttribute("normal", new BufferAttribute(normals, 3));
-    else geometry.computeVertexNormals();
-  }
-  return geometry;
 }

@@ -148,7 +148,8 @@ function positionsOf(numbers: number[]): BufferGeometry {
   return new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(numbers), 3));
 }
 
-function geometryOf({ positions, normals, indices }: MeshData): BufferGeometry {
+/** The mesh, or bare points, in three.js; normals are made where they are missing. */
+export function geometryOf({ positions, normals, indices }: MeshData): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
   if (indices.length > 0) {
