@@ -1,12 +1,11 @@
 import { defineConfig } from "vitest/config";
 
-// One browser at a time: the tests measure, and a registration uses all cores. What the machine disturbs is tried once more.
+// One browser at a time: the tests measure, and a registration uses all cores.
 export default defineConfig({
   test: {
     include: ["e2e/**/*.test.ts"],
     testTimeout: 180_000,
     hookTimeout: 120_000,
     fileParallelism: false,
-    retry: 1,
   },
 });
