@@ -191,9 +191,11 @@ void judge(const FitModel& model, const ScanTarget& scan, const HypothesisSettin
            HypothesisResult& result) {
   PosedModel posed;
   posed.update(model, result.state);
-  for (int limb = 0; limb < 4; ++limb)
-    result.misfit_limbs[limb] =
-        extremity_misfit(model, scan, posed, limb) > extremity_limit(result.score, settings);
+  for (int limb = 0; limb < 4; ++limb) {
+    const double misfit = extremity_misfit(model, scan, posed, limb);
+    result.misfit_limbs[limb] = misfit > extremity_limit(result.score, settings);
+    result.limb_misfit[limb] = result.score.typical > 0 ? misfit / result.score.typical : 0;
+  }
   result.bad = is_hopeless(result.score, settings);
   result.limb_away = is_unexplained_at_large(result.score, settings);
 }

@@ -47,6 +47,8 @@ struct HypothesisResult {
   /// Whether whole limbs are away from the scan: one of the thresholds at the 95th percentile.
   bool limb_away = false;
   std::array<bool, 4> misfit_limbs{};  ///< hands and feet, as kLimbs, that do not look like the scan there
+  /// extremity_misfit() of hands and feet, times FitScore::typical.
+  std::array<double, 4> limb_misfit{};
   std::string start;  ///< name of the start that led here, e.g. "landmarks", "legs exchanged"
   int repairs = 0;    ///< limbs found again
   int turned = 0;     ///< hands and feet turned round

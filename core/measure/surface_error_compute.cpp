@@ -2,7 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "base/random.h"
@@ -177,10 +179,15 @@ SurfaceMeasurement measure_surface(const PosedTemplate& model, const ScanSurface
   }
   const auto samples = static_cast<std::ptrdiff_t>(result.sampled_point.size());
   result.sampled_distance_m.resize(result.sampled_point.size());
+  result.sampled_vertex.resize(result.sampled_point.size());
   execution.parallel_for(samples, 256, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t k = begin; k < end; ++k) {
       if (k % 256 == 0) execution.check();
-      result.sampled_distance_m[k] = model_surface.query(scan.points.col(result.sampled_point[k])).distance;
+      const SurfacePoint closest = model_surface.query(scan.points.col(result.sampled_point[k]));
+      Index corner = 0;
+      closest.barycentric.maxCoeff(&corner);
+      result.sampled_distance_m[k] = closest.distance;
+      result.sampled_vertex[k] = model.faces(corner, closest.face);
     }
   });
 
@@ -194,13 +201,17 @@ SurfaceMeasurement measure_surface(const PosedTemplate& model, const ScanSurface
 
   // By area: two thirds of the vertices sit in head, hands and feet.
   const Eigen::VectorXf area = vertex_areas(model.vertices, model.faces);
-  double near_area = 0, opposed_area = 0;
+  std::array<double, 24> near_area{}, opposed_area{};
   for (std::size_t v = 0; v < vertices; ++v) {
     if (result.surface_distance_m[v] > kObservedDistance) continue;
-    near_area += area[static_cast<Index>(v)];
-    if (opposed[v] != 0) opposed_area += area[static_cast<Index>(v)];
+    near_area[model.segment[v]] += area[static_cast<Index>(v)];
+    if (opposed[v] != 0) opposed_area[model.segment[v]] += area[static_cast<Index>(v)];
   }
-  if (near_area > 0) result.opposed_share = opposed_area / near_area;
+  for (std::size_t s = 0; s < near_area.size(); ++s)
+    result.segment_opposed_share.push_back(near_area[s] > 0 ? opposed_area[s] / near_area[s] : 0);
+  const double all_near = std::accumulate(near_area.begin(), near_area.end(), 0.0);
+  if (all_near > 0)
+    result.opposed_share = std::accumulate(opposed_area.begin(), opposed_area.end(), 0.0) / all_near;
   return result;
 }
 

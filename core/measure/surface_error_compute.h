@@ -37,8 +37,10 @@ struct SurfaceMeasurement {
   std::vector<std::uint8_t> observed;     ///< V: 1 where a compatible scan point lies within 20 mm
   std::vector<int> sampled_point;         ///< scan points used for scan_to_model
   std::vector<float> sampled_distance_m;  ///< their distance to the model's surface
+  std::vector<int> sampled_vertex;        ///< template vertex nearest to where they meet the model's surface
   /// Share, by area, of the model's surface within 20 mm of the scan's that faces against it (cosine < 0).
   double opposed_share = 0;
+  std::vector<double> segment_opposed_share;  ///< 24: the same of each segment
 };
 
 /// Measures a registration in both directions. At most 50,000 scan points, spread evenly over the file's

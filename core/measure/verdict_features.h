@@ -36,6 +36,18 @@ struct VerdictFeatures {
   /// Share of each segment's vertices over a hole of the scan or beyond its rim: they say nothing about the
   /// fit.
   std::array<double, 24> unseen_share{};
+  /// By segment: distances of its vertices that the scan can show, and of the scan's points nearest to it,
+  /// mm; share of those points farther than 50 mm; share of its near surface that faces against the scan's. 0
+  /// where there is nothing to measure.
+  std::array<double, 24> part_model_to_scan_p95_mm{}, part_scan_to_model_p95_mm{};
+  std::array<double, 24> part_unexplained_share{}, part_opposed_share{};
+  /// Misfit of left and right hand, left and right foot: mean distance in position and normal to the scan,
+  /// relative to `typical_mm`.
+  std::array<double, 4> limb_misfit{};
+  /// How much worse the next best distinct start fitted, mm (both directions added up); 0 when there was
+  /// none.
+  double runner_up_gap_mm = 0;
+  int refits = 0;  ///< surface fits beyond the first that the search for a better fit took
   /// Hands and feet that do not look like the scan where they lie, though other starts were tried.
   std::vector<std::string> misfit_parts;
   std::vector<JointFinding> joint_limit_excess_rad;  ///< joints beyond their limits, by how much
@@ -47,7 +59,8 @@ struct VerdictFeatures {
 };
 
 /// The features that follow from a surface measurement; the others keep their defaults.
-VerdictFeatures features_from(const SurfaceMeasurement& measurement);
+/// @param segment  one entry a template vertex, 0..23.
+VerdictFeatures features_from(const SurfaceMeasurement& measurement, std::span<const std::uint8_t> segment);
 
 /// Takes vertices that the scan cannot show out of the features: their share by segment, and the distances
 /// from model to scan without them. @param unseen, segment  one entry a template vertex.

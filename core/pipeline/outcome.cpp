@@ -161,10 +161,13 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
   SurfaceMeasurement measured = measured_body(body, vertices, surface, execution);
 
   const Skeleton skeleton = pose_skeleton(body, state);
-  VerdictFeatures features = features_from(measured);
+  VerdictFeatures features = features_from(measured, body.segment);
   leave_out_unseen(unseen_vertices(body, vertices, samples), body.segment, measured, features);
   features.typical_mm = 1e3 * input.fit.score.typical;
   features.misfit_parts = misfit_parts(input.fit);
+  features.limb_misfit = input.fit.limb_misfit;
+  features.runner_up_gap_mm = 1e3 * input.fit.runner_up_gap;
+  features.refits = input.fit.refits;
   features.joint_limit_excess_rad = limit_excess(body, input.models.prior, state);
   features.keypoint_disagreement_m = keypoint_disagreement(input.targets, body, skeleton, features);
   features.stature_m = standing_stature(body, state.betas);
@@ -183,6 +186,7 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
     result.joints.push_back({body.joint_names[j], skeleton.joints.col(j), joints_scan.col(j)});
   }
   result.verdict = judge(features);
+  result.verdict_features = std::move(features);
   // Offsets on top of a wrong pose would only dress it up.
   if (input.settings.detail == DetailMode::vertex && result.verdict.status != VerdictStatus::failed) {
     input.begin_stage(&Timing::detail);

@@ -9,6 +9,7 @@
 #include "base/types.h"
 #include "measure/surface_error.h"
 #include "measure/verdict.h"
+#include "measure/verdict_features.h"
 #include "pipeline/models.h"
 #include "pipeline/settings.h"
 
@@ -73,6 +74,8 @@ struct Registration {
   std::optional<SurfaceError> surface_error;
   std::optional<SurfaceError> parametric_error;  ///< before vertex offsets were added; none without offsets
   Verdict verdict;
+  std::optional<VerdictFeatures>
+      verdict_features;  ///< what it was judged from; none when failed before a fit
   Timing timing_ms;
   Settings settings;
 

@@ -4,6 +4,7 @@
 
 #include "pipeline/result_json_value.h"
 #include "pipeline/settings_json.h"
+#include "pipeline/verdict_json.h"
 
 namespace vitruvian {
 namespace {
@@ -176,6 +177,8 @@ std::string registration_json(const Registration& registration, std::string_view
   document["verdict"] = {{"status", to_string(registration.verdict.status)},
                          {"confidence", rounded(registration.verdict.confidence, 1e4)},
                          {"reasons", registration.verdict.reasons}};
+  if (registration.verdict_features)
+    document["verdict"]["features"] = features_to_json(*registration.verdict_features);
   document["timing_ms"] = timing_json(registration.timing_ms);
   document["settings"] = settings_to_json(registration.settings);
   return json_text(document, style);

@@ -5,6 +5,7 @@
 #include "pipeline/result_json_value.h"
 #include "pipeline/settings_json.h"
 #include "pipeline/settings_names.h"
+#include "pipeline/verdict_json.h"
 
 namespace vitruvian {
 namespace {
@@ -163,6 +164,7 @@ Registration parse_registration(std::string_view text, const std::string& file_n
   const JsonValue reasons = verdict.at("reasons");
   for (std::size_t i = 0; i < reasons.size(); ++i)
     registration.verdict.reasons.push_back(reasons.at(i).text());
+  if (verdict.has("features")) registration.verdict_features = features_from_json(verdict.at("features"));
   registration.timing_ms = read_timing(document.at("timing_ms"));
   registration.settings = settings_from_json(document.at("settings"));
   return registration;

@@ -157,7 +157,14 @@ TEST(Verdict, FeaturesComeFromTheMeasurement) {
   m.error.scan_to_model.p95_mm = 12;
   m.error.surface_all.p95_mm = 7;
   m.error.surface_segments = {{"hips", 0.4, std::nullopt}};
-  const VerdictFeatures f = features_from(m);
+  m.sampled_vertex = {0, 0, 1, 1};
+  m.segment_opposed_share = std::vector<double>(24, 0.125);
+  const std::vector<std::uint8_t> segment = {0, 5};
+  const VerdictFeatures f = features_from(m, segment);
+  EXPECT_NEAR(f.part_scan_to_model_p95_mm[0], 1.95, 1e-4);
+  EXPECT_EQ(f.part_unexplained_share[0], 0);
+  EXPECT_EQ(f.part_unexplained_share[5], 1);
+  EXPECT_EQ(f.part_opposed_share[7], 0.125);
   EXPECT_EQ(f.unexplained_share, 0.5);
   EXPECT_EQ(f.opposed_share, 0.25);
   EXPECT_EQ(f.scan_to_model_p95_mm, 12);

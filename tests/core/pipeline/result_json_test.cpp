@@ -144,6 +144,29 @@ TEST(ResultJson, ReadingBackGivesTheSameText) {
   EXPECT_EQ(back.joints[7].scan, r.joints[7].scan);
 }
 
+TEST(ResultJson, VerdictFeaturesAreNamedAndReadBack) {
+  Registration r = sample_registration();
+  VerdictFeatures f;
+  f.scan_to_model_p95_mm = 12.5;
+  f.part_opposed_share[21] = 0.25;
+  f.limb_misfit[3] = 1.5;
+  f.refits = 7;
+  f.keypoint_disagreement_m = {{"left_wrist", 0.125}};
+  f.stature_m = 1.75;
+  r.verdict_features = f;
+  const std::string text = registration_json(r, "1", JsonStyle::pretty);
+  const ordered_json j = ordered_json::parse(text)["verdict"];
+  EXPECT_EQ(keys(j), (Keys{"status", "confidence", "reasons", "features"}));
+  EXPECT_EQ(j["features"]["scan_to_model_p95_mm"], 12.5);
+  EXPECT_EQ(j["features"]["limb_misfit"]["right_foot"], 1.5);
+  ASSERT_EQ(j["features"]["segments"].size(), 24u);
+  EXPECT_EQ(j["features"]["segments"][21]["segment"], "right_hand");
+  EXPECT_EQ(j["features"]["segments"][21]["opposed_share"], 0.25);
+  EXPECT_EQ(registration_json(parse_registration(text, "r.json"), "1", JsonStyle::pretty), text);
+  r.verdict_features->typical_mm = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NO_THROW(parse_registration(registration_json(r, "1", JsonStyle::pretty), "r.json"));
+}
+
 TEST(ResultJson, FailedRegistrationHasNullsAndReadsBack) {
   Registration r;
   r.scan.file = "bad.ply";
