@@ -1,6 +1,7 @@
 // Entry points for web/src/worker/core.ts. Text goes out as zero-terminated UTF-8 that stays valid until the
 // next call. No exception leaves: a call that fails returns null (or 0) and last_error() tells why.
 #include <emscripten.h>
+#include <malloc.h>
 
 #include <exception>
 #include <memory>
@@ -78,6 +79,9 @@ EMSCRIPTEN_KEEPALIVE const char* vitruvian_version() { return VITRUVIAN_VERSION;
 
 /// Bytes of the module's memory. Makes Module.HEAPU8 cover all of it.
 EMSCRIPTEN_KEEPALIVE double vitruvian_memory() { return renewed_memory_size(); }
+
+/// Bytes of that memory in use; the rest is free for what comes.
+EMSCRIPTEN_KEEPALIVE double vitruvian_memory_in_use() { return static_cast<double>(mallinfo().uordblks); }
 
 EMSCRIPTEN_KEEPALIVE int vitruvian_has_threads() { return VITRUVIAN_THREADED; }
 

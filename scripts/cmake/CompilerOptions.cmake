@@ -2,7 +2,8 @@ add_compile_options(-Wall -Wextra -Wno-psabi)
 if(EMSCRIPTEN)
   # -msse4.1 switches on Eigen's SSE path, which Emscripten maps to WASM SIMD.
   add_compile_options(-fexceptions -msimd128 -msse4.1)
-  add_link_options(-fexceptions -msimd128 -sALLOW_MEMORY_GROWTH -sINITIAL_MEMORY=64MB -sMAXIMUM_MEMORY=4GB)
+  # A usual scan needs some 70 MB, so that memory begins with a little more and need not grow for it.
+  add_link_options(-fexceptions -msimd128 -sALLOW_MEMORY_GROWTH -sINITIAL_MEMORY=96MB -sMAXIMUM_MEMORY=4GB)
   if(VITRUVIAN_THREADS)
     add_compile_options(-pthread)
     add_link_options(-pthread -Wno-pthreads-mem-growth)

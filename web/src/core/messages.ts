@@ -45,8 +45,8 @@ export interface Calls {
   poseBody: { args: { parameters: BodyParameters }; result: PosedBody };
   /** The fit of the opened scan, whose keypoints are found, again and watched. */
   lesson: { args: { settings: LessonSettings }; result: LessonData };
-  /** Bytes of memory that the core holds. */
-  memory: { args: Record<string, never>; result: { heap: number } };
+  /** Bytes of memory that the core holds, and how many of them are in use. */
+  memory: { args: Record<string, never>; result: { heap: number; inUse: number } };
 }
 
 export type Kind = keyof Calls;

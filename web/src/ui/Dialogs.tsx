@@ -38,11 +38,11 @@ function Dialog({
 
 export function About() {
   const core = state.core.value;
-  const held = useSignal<number | null>(null);
+  const held = useSignal<Awaited<ReturnType<typeof memory>>>(null);
   useEffect(() => {
     memory().then(
-      (heap) => {
-        held.value = heap;
+      (now) => {
+        held.value = now;
       },
       () => {},
     );
@@ -65,7 +65,9 @@ export function About() {
         {held.value !== null && (
           <>
             <dt>Memory</dt>
-            <dd>{bytes(held.value)}</dd>
+            <dd>
+              {bytes(held.value.heap)}, {bytes(held.value.inUse)} in use
+            </dd>
           </>
         )}
       </dl>

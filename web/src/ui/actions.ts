@@ -277,8 +277,8 @@ export function measuredFiles(format: string): Promise<OutputFile[]> {
   return client.call("measuredFiles", { format });
 }
 
-/** Bytes of memory that the core has; null when it was not started. */
-export async function memory(): Promise<number | null> {
+/** Bytes of memory that the core has, and uses; null when it was not started. */
+export async function memory(): Promise<{ heap: number; inUse: number } | null> {
   if (!client.alive) return null;
-  return (await client.call("memory", {})).heap;
+  return client.call("memory", {});
 }

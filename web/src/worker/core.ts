@@ -35,6 +35,7 @@ interface Module {
   _free(address: number): void;
   _vitruvian_version(): Text;
   _vitruvian_memory(): number;
+  _vitruvian_memory_in_use(): number;
   _vitruvian_has_threads(): number;
   _vitruvian_last_error(): Text;
   _vitruvian_create(threads: number): number;
@@ -149,6 +150,11 @@ export class Core {
   /** Bytes of the module's memory. */
   heap(): number {
     return this.module._vitruvian_memory();
+  }
+
+  /** Bytes of it in use. */
+  inUse(): number {
+    return this.module._vitruvian_memory_in_use();
   }
 
   /** All of the module's memory as it is now: it may have grown since the last look, on any thread. */

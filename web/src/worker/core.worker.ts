@@ -158,7 +158,7 @@ const handlers: Handlers = {
   },
 
   async memory() {
-    return { heap: theCore().heap() };
+    return { heap: theCore().heap(), inUse: theCore().inUse() };
   },
 };
 
