@@ -252,7 +252,8 @@ const MeasuredRegistration& Session::measured() {
         *registration_, models_.models().body, registration_->offsets.cast<double>(),
         to_hex(sha256(std::as_bytes(std::span(text.data(), text.size())))));
     measured_->set_vertex_errors(registration_->vertex_error_mm);
-    standing_vertices_ = measured_->standing_in_place().cast<float>();
+    standing_vertices_ = measured_->in_place(Posture::standing).cast<float>();
+    seated_vertices_ = measured_->in_place(Posture::sitting).cast<float>();
   }
   return *measured_;
 }
@@ -260,6 +261,7 @@ const MeasuredRegistration& Session::measured() {
 std::string Session::measurements_report() {
   nlohmann::json report = describe_measurements(measured());
   report["standing"] = array_reference(standing_vertices_.data(), standing_vertices_.size());
+  report["seated"] = array_reference(seated_vertices_.data(), seated_vertices_.size());
   report["faces"] = array_reference(models_.models().body.faces.data(), models_.models().body.faces.size());
   return text_of(report);
 }

@@ -60,8 +60,8 @@ class Session {
   std::string edit(const std::string& request);
   /// `{"files": [{"name", "data"}]}`: what the command line writes, with the mesh as "ply", "obj" or "glb".
   std::string files_report(const std::string& mesh_format);
-  /// measurements.json with where each dimension lies, and the standing body, `"standing":
-  /// array` of vertices (body frame) and `"faces": array`. See describe_measurements().
+  /// measurements.json with where each dimension lies, see describe_measurements(), and the re-posed bodies:
+  /// "standing" and "seated" (arrays of vertices, body frame) and "faces".
   std::string measurements_report();
   /// See describe_profile().
   std::string profile_report(const std::string& segment, int count);
@@ -100,7 +100,7 @@ class Session {
   NetworkReply reply_;
   std::optional<Registration> registration_;
   std::unique_ptr<MeasuredRegistration> measured_;  ///< of registration_, when it was asked for
-  Points3f standing_vertices_;
+  Points3f standing_vertices_, seated_vertices_;
   Points3f body_vertices_;   ///< registered, body frame
   Points3f posed_vertices_;  ///< before the fit, body frame
   std::vector<ExportedFile> files_;

@@ -139,6 +139,11 @@ constexpr std::array kSpecs = {
                   "left_tragion", "right_tragion", "top_of_head", R::torso, "head", 0, 0},
     across(K::limb_narrowest, "neck_girth", "neck girth", kBoth, false, R::torso, "neck", "", "", 0.1, 0.5,
            "smallest tape across the neck's axis in the lower half of the neck, clear of jaw and shoulders"),
+    DimensionSpec{
+        "neck_base_girth", "neck base girth", kIso8559,
+        "taut tapes from the cervicale over the left and the right side neck point to the notch of the "
+        "breastbone",
+        false, K::neck_base, "cervicale", "suprasternale", "*neck_shoulder_point", R::torso, "", 0, 0},
     level(K::level_girth, "upper_chest_girth", "upper chest girth", kIso8559, R::torso,
           "left_axilla_anterior", "right_axilla_anterior",
           "horizontal tape round the torso at the front axillary folds, arms left out"),

@@ -25,6 +25,7 @@ enum class DimensionKind {
   tilted_girth,     ///< tape in the plane through a and b that is level from left to right
   sagittal_arc,     ///< taut tape over the surface from a to b in the median plane
   coronal_arc,      ///< taut tape from a over c to b in the plane of the three
+  neck_base,        ///< taut tapes from a to b over c, left and right
   foot_extent,      ///< extent of the foot along the line from a to b, seen from above
 };
 

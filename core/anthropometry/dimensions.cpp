@@ -7,15 +7,13 @@
 #include <utility>
 
 #include "anthropometry/tape.h"
+#include "anthropometry/uncertainty.h"
 
 namespace vitruvian {
 namespace {
 
 constexpr double kThighBelowCrotch = 0.020;
 constexpr double kCoarseStep = 0.010, kFineStep = 0.001;
-/// Landmarks are points of the template: how far they slide along the skin from one scan to the next of a
-/// person, one standard deviation.
-constexpr double kLandmarkSlide = 0.003;
 
 SegmentSet set_of(std::initializer_list<const char*> names) {
   SegmentSet set = 0;
@@ -198,6 +196,25 @@ class Taker {
     return tapes_.arc({over, (b - a).cross(over - a).normalized()}, region(), wanted_, a, b, over);
   }
 
+  /// From a to b over the left side's c, and back over the right side's.
+  std::optional<Tape> neck_base() {
+    std::optional<Tape> whole;
+    for (const char* side : {"left", "right"}) {
+      side_ = side;
+      std::optional<Tape> part = arc_over(place(spec_->c));
+      if (!part) return std::nullopt;
+      if (!whole) {
+        whole = std::move(part);
+        continue;
+      }
+      whole->corners.insert(whole->corners.end(), part->corners.rbegin() + 1, part->corners.rend() - 1);
+      whole->closed = true;
+    }
+    side_.clear();
+    whole->length = whole->length_on(figure_);
+    return whole;
+  }
+
   int segment() const { return segment_named(sided(spec_->segment, side_)); }
 
   /// The place in [low, high] whose tape is best, coarse then fine. `better` compares two tapes.
@@ -257,6 +274,8 @@ class Taker {
       }
       case DimensionKind::coronal_arc:
         return arc_over(place(spec_->c));
+      case DimensionKind::neck_base:
+        return neck_base();
       default:
         return std::nullopt;
     }
@@ -284,25 +303,6 @@ double line_length(const std::vector<Vec3d>& corners) {
   return sum;
 }
 
-/// Standard uncertainty from the distance between body and scan where it is measured. A girth sums the error
-/// of some four independent patches round the limb (pi e); a line has two ends, each with its own error and
-/// slide.
-std::optional<double> uncertainty(const Finding& finding, const FitErrors& errors) {
-  double sum = 0;
-  int count = 0;
-  for (int s = 0; s < kSegmentCount; ++s) {
-    if (!(finding.touched >> s & 1)) continue;
-    const std::optional<double>& error = errors[static_cast<std::size_t>(s)];
-    if (!error) continue;
-    sum += *error;
-    ++count;
-  }
-  if (count == 0) return std::nullopt;
-  const double e = sum / count;
-  if (finding.tape) return std::hypot((finding.tape->closed ? 3.14159265 : 1.41421356) * e, kLandmarkSlide);
-  return 1.41421356 * std::hypot(e, kLandmarkSlide);
-}
-
 }  // namespace
 
 std::vector<Dimension> measure_dimensions(const Figure& standing, const Figure& scanned,
@@ -321,11 +321,13 @@ std::vector<Dimension> measure_dimensions(const Figure& standing, const Figure& 
       dimension.standard = spec.standard;
       dimension.definition = spec.definition;
       dimension.side = side;
-      dimension.uncertainty_m = uncertainty(*finding, errors);
+      dimension.fit_error_m = mean_fit_error(finding->touched, errors);
+      dimension.uncertainty_m =
+          estimated_uncertainty(finding->kind, finding->tape && finding->tape->closed, dimension.fit_error_m);
       dimension.course_kind = finding->kind;
       const bool on_landmarks = !finding->line.empty();
-      for (const Posture posture : {Posture::standard, Posture::scanned}) {
-        const Figure& figure = posture == Posture::standard ? standing : scanned;
+      for (const Posture posture : {Posture::standing, Posture::scanned}) {
+        const Figure& figure = posture == Posture::standing ? standing : scanned;
         dimension.posture = posture;
         if (on_landmarks) {
           dimension.course = line_course(*finding, figure);
@@ -334,7 +336,7 @@ std::vector<Dimension> measure_dimensions(const Figure& standing, const Figure& 
           dimension.course = finding->tape->course(figure);
           if (finding->tape->closed) dimension.course.push_back(dimension.course.front());
           dimension.value_m =
-              posture == Posture::standard ? finding->value : finding->tape->length_on(figure);
+              posture == Posture::standing ? finding->value : finding->tape->length_on(figure);
         } else if (posture == Posture::scanned) {
           continue;
         } else {

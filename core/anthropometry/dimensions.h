@@ -11,7 +11,8 @@
 
 namespace vitruvian {
 
-enum class Posture { standard, scanned };
+/// The body that is measured: re-posed as the standards want, standing or sitting, or as it was scanned.
+enum class Posture { standing, scanned, sitting };
 
 /// What a dimension's course shows.
 enum class CourseKind {
@@ -25,9 +26,11 @@ enum class CourseKind {
 struct Dimension {
   std::string id, name, standard, definition;
   std::string side;  ///< "left", "right" or empty
-  Posture posture = Posture::standard;
+  Posture posture = Posture::standing;
   double value_m = 0;
   std::optional<double> uncertainty_m;  ///< standard uncertainty; none where the fit's error is unknown
+  /// Mean distance between body and scan over the segments that it touches; none where none was observed.
+  std::optional<double> fit_error_m;
   CourseKind course_kind = CourseKind::line;
   /// What was measured along, body frame of the figure that it was taken on.
   std::vector<Vec3d> course;

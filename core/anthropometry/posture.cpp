@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 namespace vitruvian {
 namespace {
 
 constexpr double kMostCollarFall = 15 * std::numbers::pi / 180;
+/// Arms hang a little off the trunk.
+constexpr double kSittingArmAngle = 8 * std::numbers::pi / 180;
 
 Mat3d turn(double angle, const Vec3d& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
 
@@ -45,6 +48,42 @@ BodyState standard_posture(const MeasuredModel& model, const Eigen::VectorXd& be
     const Mat3d whole = Eigen::Quaterniond::FromTwoVectors(collar_turn * arm, hanging).toRotationMatrix();
     state.rotation[collar] = collar_turn;
     state.rotation[shoulder] = collar_turn.transpose() * whole * collar_turn;
+  }
+  return state;
+}
+
+BodyState seated_posture(const MeasuredModel& model, const Eigen::VectorXd& betas) {
+  BodyState state = BodyState::rest(model.body());
+  state.betas = betas;
+  const Points3d joints = pose_skeleton(model.body(), state).rest_joints;
+  const auto joint = [&](const std::string& segment) {
+    return static_cast<std::size_t>(model.joint(segment_named(segment)));
+  };
+  const auto bone = [&](std::size_t from, std::size_t to) {
+    return Vec3d((joints.col(static_cast<Index>(to)) - joints.col(static_cast<Index>(from))).normalized());
+  };
+  const auto toward = [](const Vec3d& from, const Vec3d& to) {
+    return Mat3d(Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix());
+  };
+  for (const std::string side : {"left", "right"}) {
+    const std::size_t hip = joint(side + "_upper_leg"), knee = joint(side + "_leg"),
+                      ankle = joint(side + "_foot");
+    const Mat3d thigh = toward(bone(hip, knee), Vec3d::UnitZ()),
+                shank = toward(bone(knee, ankle), -Vec3d::UnitY());
+    state.rotation[hip] = thigh;
+    state.rotation[knee] = thigh.transpose() * shank;
+    state.rotation[ankle] = shank.transpose();
+
+    const double sign = side == "left" ? 1 : -1;
+    const std::size_t collar = joint(side + "_shoulder"), shoulder = joint(side + "_arm"),
+                      elbow = joint(side + "_forearm"), wrist = joint(side + "_hand");
+    const Mat3d collar_turn = turn(-sign * kMostCollarFall, Vec3d::UnitZ());
+    const Vec3d hanging(sign * std::sin(kSittingArmAngle), -std::cos(kSittingArmAngle), 0);
+    const Mat3d upper = toward(collar_turn * bone(shoulder, elbow), hanging) * collar_turn;
+    const Mat3d lower = toward(upper * bone(elbow, wrist), Vec3d::UnitZ()) * upper;
+    state.rotation[collar] = collar_turn;
+    state.rotation[shoulder] = collar_turn.transpose() * upper;
+    state.rotation[elbow] = upper.transpose() * lower;
   }
   return state;
 }

@@ -14,4 +14,8 @@ constexpr double kArmAngle = 0.34906585;  // 20 degrees
 /// the collars, up to 15 degrees.
 BodyState standard_posture(const MeasuredModel& model, const Eigen::VectorXd& betas);
 
+/// The same body sitting as ISO 7250-1 wants: trunk upright as at rest, thighs level and forward, lower legs
+/// vertical, feet flat, upper arms hanging, forearms level and forward.
+BodyState seated_posture(const MeasuredModel& model, const Eigen::VectorXd& betas);
+
 }  // namespace vitruvian

@@ -103,10 +103,11 @@ std::string html_report(const MeasuredRegistration& m) {
   content.facts.push_back(
       "drawn and measured standing: upright, ankles 200 mm apart, arms 20 degrees from the vertical");
   for (const Dimension& d : m.report().dimensions) {
-    if (d.posture != Posture::standard) continue;
+    if (d.posture == Posture::scanned) continue;
     content.dimensions.push_back({d.name + (d.side.empty() ? "" : ", " + d.side), fixed(1e3 * d.value_m, 1),
                                   d.uncertainty_m ? fixed(1e3 * *d.uncertainty_m, 1) : "", d.standard,
                                   d.definition});
+    if (d.posture == Posture::sitting) continue;
     if (d.course_kind == CourseKind::tape || d.course_kind == CourseKind::line)
       content.curves.push_back({d.name, d.course});
   }

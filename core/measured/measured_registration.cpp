@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "anthropometry/posture.h"
+#include "anthropometry/seated.h"
 #include "pipeline/body_parameters.h"
 
 namespace vitruvian {
@@ -16,10 +17,10 @@ const BodyParameters& known_parameters(const Registration& registration) {
   return *registration.parameters;
 }
 
-/// Standing straight, with the mouth shut.
-BodyState standing_state(const MeasuredModel& model, BodyParameters parameters) {
+/// The registered shape, with the mouth shut.
+Eigen::VectorXd calm_shape(const BodyModel& body, BodyParameters parameters) {
   parameters.expression.setZero();
-  return standard_posture(model, state_of(model.body(), parameters).betas);
+  return state_of(body, parameters).betas;
 }
 
 /// The rows of surface_segments by segment.
@@ -63,11 +64,16 @@ MeasuredRegistration::MeasuredRegistration(const Registration& registration, con
       state_(state_of(body, known_parameters(registration))),
       rest_offsets_(std::move(rest_offsets)),
       scanned_(model_, state_, rest_offsets_),
-      standing_(model_, standing_state(model_, *registration.parameters), rest_offsets_),
+      standing_(model_, standard_posture(model_, calm_shape(body, *registration.parameters)), rest_offsets_),
+      seated_(model_, seated_posture(model_, calm_shape(body, *registration.parameters)), rest_offsets_),
       scan_from_body_(registration.alignment.body_from_scan.inverse()) {
   report_.registration_sha256 = std::move(sha256);
   report_.body = measure_body(scanned_);
-  report_.dimensions = measure_dimensions(standing_, scanned_, landmarks_, fit_errors(registration));
+  const FitErrors errors = fit_errors(registration);
+  report_.dimensions = measure_dimensions(standing_, scanned_, landmarks_, errors);
+  for (Dimension& seated : measure_seated(seated_, landmarks_, errors)) {
+    report_.dimensions.push_back(std::move(seated));
+  }
   const auto rows = error_rows(registration);
   for (const SurfaceLandmark& landmark : landmarks_.all()) {
     LandmarkReport row{std::string(landmark.name), landmark.position(scanned_.vertices), Vec3d::Zero(),
@@ -89,14 +95,19 @@ void MeasuredRegistration::compare(const SurfaceMeasurement& surface) {
   for (const float distance : surface.surface_distance_m) vertex_error_mm_.push_back(1e3f * distance);
 }
 
-Vec3d MeasuredRegistration::standing_shift() const {
-  const Vec3d there = scanned_.axes[0].proximal, here = standing_.axes[0].proximal;
-  return {there.x() - here.x(), scanned_.vertices.row(1).minCoeff() - standing_.vertices.row(1).minCoeff(),
+const Figure& MeasuredRegistration::figure(Posture posture) const {
+  return posture == Posture::standing ? standing_ : posture == Posture::sitting ? seated_ : scanned_;
+}
+
+Vec3d MeasuredRegistration::shift(Posture posture) const {
+  const Figure& own = figure(posture);
+  const Vec3d there = scanned_.axes[0].proximal, here = own.axes[0].proximal;
+  return {there.x() - here.x(), scanned_.vertices.row(1).minCoeff() - own.vertices.row(1).minCoeff(),
           there.z() - here.z()};
 }
 
-Points3d MeasuredRegistration::standing_in_place() const {
-  return standing_.vertices.colwise() + standing_shift();
+Points3d MeasuredRegistration::in_place(Posture posture) const {
+  return figure(posture).vertices.colwise() + shift(posture);
 }
 
 Vec3d MeasuredRegistration::in_scan(const Vec3d& body_m) const {
@@ -104,9 +115,9 @@ Vec3d MeasuredRegistration::in_scan(const Vec3d& body_m) const {
 }
 
 std::vector<Vec3d> MeasuredRegistration::course_in_scan(const Dimension& dimension) const {
-  const Vec3d shift = dimension.posture == Posture::standard ? standing_shift() : Vec3d::Zero();
+  const Vec3d moved = shift(dimension.posture);
   std::vector<Vec3d> course;
-  for (const Vec3d& corner : dimension.course) course.push_back(in_scan(corner + shift));
+  for (const Vec3d& corner : dimension.course) course.push_back(in_scan(corner + moved));
   return course;
 }
 

@@ -20,7 +20,7 @@ struct ProfileSection {
 /// A registered body, measured as registered and re-posed to the standard posture.
 class MeasuredRegistration {
  public:
-  /// Measures at once: 66 dimensions, 87 landmarks, 24 segments.
+  /// Measures at once: 76 dimensions, 87 landmarks, 24 segments.
   /// @param registration  with parameters; it and the model it was made with must outlive this.
   /// @param rest_offsets  3 x V, added to the shaped vertices before posing; or empty.
   /// @param sha256        of registration.json.
@@ -41,20 +41,22 @@ class MeasuredRegistration {
   const Points3d& rest_offsets() const { return rest_offsets_; }
   const Figure& scanned() const { return scanned_; }    ///< as registered, body frame
   const Figure& standing() const { return standing_; }  ///< standard posture, its pelvis at the origin's
+  const Figure& seated() const { return seated_; }      ///< likewise, sitting
   const MeasurementReport& report() const { return report_; }
   /// V, distance to the scan's surface; empty without a scan.
   const std::vector<float>& vertex_error_mm() const { return vertex_error_mm_; }
 
-  /// The standing body's vertices where the scanned one stands: same floor, pelvis above the same spot. 3 x
-  /// V, body frame, metres.
-  Points3d standing_in_place() const;
-  /// Where a dimension lies on its body (the standing one as in standing_in_place()), scan frame and units.
+  /// The standing or sitting body's vertices where the scanned one is: same floor, pelvis above the same
+  /// spot. 3 x V, body frame, metres.
+  Points3d in_place(Posture posture) const;
+  /// Where a dimension lies on its body (as in in_place()), scan frame and units.
   std::vector<Vec3d> course_in_scan(const Dimension& dimension) const;
   /// The paper's sweep with its curves.
   std::vector<ProfileSection> profile(int segment, int count) const;
 
  private:
-  Vec3d standing_shift() const;
+  const Figure& figure(Posture posture) const;
+  Vec3d shift(Posture posture) const;
   Vec3d in_scan(const Vec3d& body_m) const;
 
   const Registration& registration_;
@@ -62,7 +64,7 @@ class MeasuredRegistration {
   LandmarkSet landmarks_;
   BodyState state_;
   Points3d rest_offsets_;
-  Figure scanned_, standing_;
+  Figure scanned_, standing_, seated_;
   Mat4d scan_from_body_;
   MeasurementReport report_;
   std::vector<float> vertex_error_mm_;

@@ -11,6 +11,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// By Posture: the body that was measured.
+constexpr std::array<const char*, 3> kFigureNames = {"standing", "scanned", "sitting"};
+
 /// Six significant digits below the unit's fourth decimal are noise; what is not finite becomes null.
 double rounded(double value, double steps_per_unit) {
   return std::round(value * steps_per_unit) / steps_per_unit;
@@ -62,7 +65,10 @@ ordered_json dimension_json(const Dimension& dimension) {
   row["value_mm"] = millimetres(dimension.value_m);
   row["uncertainty_mm"] =
       dimension.uncertainty_m ? ordered_json(millimetres(*dimension.uncertainty_m)) : ordered_json();
-  row["posture"] = dimension.posture == Posture::standard ? "standard" : "scanned";
+  row["fit_error_mm"] =
+      dimension.fit_error_m ? ordered_json(millimetres(*dimension.fit_error_m)) : ordered_json();
+  row["posture"] = dimension.posture == Posture::scanned ? "scanned" : "standard";
+  row["figure"] = kFigureNames[static_cast<std::size_t>(dimension.posture)];
   return row;
 }
 

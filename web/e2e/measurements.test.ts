@@ -81,6 +81,16 @@ describe("the measurements of the sample scan", () => {
         timeout: 20_000,
       })
       .toBe(false);
+    await page.getByText("Sitting", { exact: true }).click();
+    const seated = ours.dimensions.find(({ id }) => id === "sitting_height")!;
+    const standingView = await page.locator("canvas").first().screenshot();
+    await page.getByRole("button", { name: "Sitting height", exact: true }).click();
+    await page.getByText(`Sitting height ${seated.value_mm.toFixed(1)} mm`).waitFor();
+    await expect
+      .poll(async () => (await page.locator("canvas").first().screenshot()).equals(standingView), {
+        timeout: 20_000,
+      })
+      .toBe(false);
     await page.getByText("As scanned", { exact: true }).click();
     expect(await page.getByRole("button", { name: "Stature (body height)" }).count()).toBe(0);
 

@@ -85,7 +85,7 @@ TEST(StandardPosture, StandsAsDescribedInAnyShape) {
 }
 
 TEST(Dimensions, AtLeastFortyEachDefined) {
-  const auto all = dimensions_of(BodyState::rest(testing::made_body()), Posture::standard);
+  const auto all = dimensions_of(BodyState::rest(testing::made_body()), Posture::standing);
   std::set<std::string_view> names;
   for (const auto& [id, d] : all) {
     names.insert(d.name);
@@ -98,7 +98,7 @@ TEST(Dimensions, AtLeastFortyEachDefined) {
 }
 
 TEST(Dimensions, LeftAndRightOfTheSymmetricBodyAgree) {
-  const auto all = dimensions_of(BodyState::rest(testing::made_body()), Posture::standard);
+  const auto all = dimensions_of(BodyState::rest(testing::made_body()), Posture::standing);
   for (const auto& [id, d] : all) {
     if (d.side != "left") continue;
     const std::string other = id.substr(0, id.size() - 4) + "right";
@@ -110,7 +110,7 @@ TEST(Dimensions, LeftAndRightOfTheSymmetricBodyAgree) {
 TEST(Dimensions, TapesLieWhereTheyBelong) {
   const BodyState rest = BodyState::rest(testing::made_body());
   const Figure standing(measured_body(), standard_posture(measured_body(), rest.betas));
-  const auto all = dimensions_of(rest, Posture::standard);
+  const auto all = dimensions_of(rest, Posture::standing);
   const auto height = [&](const char* id) { return all.at(id).course.front().y(); };
   EXPECT_GT(height("upper_chest_girth"), height("bust_girth"));
   EXPECT_GT(height("bust_girth"), height("under_bust_girth"));
@@ -126,6 +126,16 @@ TEST(Dimensions, TapesLieWhereTheyBelong) {
   for (const Vec3d& p : all.at("neck_girth").course) EXPECT_LT(std::abs(p.x()), 0.09);
   EXPECT_NEAR(all.at("stature").value_m,
               standing.vertices.row(1).maxCoeff() - standing.vertices.row(1).minCoeff(), 1e-12);
+  // Round the neck's foot: larger than the neck, through the three landmarks, the same on both sides.
+  const Dimension& neck_base = all.at("neck_base_girth");
+  EXPECT_GT(neck_base.value_m, all.at("neck_girth").value_m);
+  for (const char* name :
+       {"cervicale", "left_neck_shoulder_point", "suprasternale", "right_neck_shoulder_point"}) {
+    const Vec3d wanted = landmarks().named(name).position(standing.vertices);
+    double nearest = 1;
+    for (const Vec3d& p : neck_base.course) nearest = std::min(nearest, (p - wanted).norm());
+    EXPECT_LT(nearest, 0.015) << name;
+  }
   EXPECT_LE(all.at("waist_girth_minimum").value_m, all.at("waist_girth").value_m + 1e-9);
   EXPECT_GE(all.at("chest_girth").value_m, all.at("bust_girth").value_m - 1e-9);
 }
@@ -133,7 +143,7 @@ TEST(Dimensions, TapesLieWhereTheyBelong) {
 TEST(Dimensions, StandardPostureDoesNotDependOnThePoseScanned) {
   BodyState sitting = testing::moved_state(8, 0.3), other = testing::moved_state(8, 0.1);
   other.betas = sitting.betas;
-  const auto a = dimensions_of(sitting, Posture::standard), b = dimensions_of(other, Posture::standard);
+  const auto a = dimensions_of(sitting, Posture::standing), b = dimensions_of(other, Posture::standing);
   for (const auto& [id, d] : a) EXPECT_EQ(d.value_m, b.at(id).value_m) << id;
 }
 
@@ -142,7 +152,7 @@ TEST(Dimensions, AsScannedEqualsStandardWhenScannedInTheStandardPosture) {
   BodyState state = standard_posture(measured_body(), betas);
   state.translation = Vec3d(1, 2, 3);
   state.rotation[0] = Eigen::AngleAxisd(0.8, Vec3d(1, 1, 0).normalized()).toRotationMatrix();
-  const auto standard = dimensions_of(state, Posture::standard),
+  const auto standard = dimensions_of(state, Posture::standing),
              scanned = dimensions_of(state, Posture::scanned);
   EXPECT_GT(scanned.size(), 60u);
   for (const auto& [id, d] : scanned) {
@@ -156,8 +166,8 @@ TEST(Dimensions, UncertaintyGrowsWithTheFitsError) {
   good.fill(0.001);
   bad.fill(0.006);
   const BodyState rest = BodyState::rest(testing::made_body());
-  const auto a = dimensions_of(rest, Posture::standard, good),
-             b = dimensions_of(rest, Posture::standard, bad);
+  const auto a = dimensions_of(rest, Posture::standing, good),
+             b = dimensions_of(rest, Posture::standing, bad);
   for (const auto& [id, d] : a) {
     ASSERT_TRUE(d.uncertainty_m) << id;
     EXPECT_GT(*b.at(id).uncertainty_m, *d.uncertainty_m) << id;

@@ -69,6 +69,7 @@ TEST_F(MeasureCommand, WritesDimensionsLandmarksAndExports) {
   EXPECT_GE(result["landmarks"].size(), 70u);
   for (const json& row : result["dimensions"]) {
     EXPECT_TRUE(row["posture"] == "standard" || row["posture"] == "scanned");
+    EXPECT_EQ(row["posture"] == "scanned", row["figure"] == "scanned");
     EXPECT_GT(row["value_mm"], 0);
     EXPECT_GT(row["uncertainty_mm"], 0);
   }

@@ -1,8 +1,8 @@
 // What the core measures on a registered body (measurements.json, and where on the body it lies).
 import type { Mesh, Vec3 } from "./types";
 
-/** The body that a dimension is taken on: re-posed standing, or as scanned. */
-export type Posture = "standard" | "scanned";
+/** The body that a dimension is taken on: re-posed standing or sitting, or as scanned. */
+export type Figure = "standing" | "sitting" | "scanned";
 
 export interface Dimension {
   id: string;
@@ -13,7 +13,8 @@ export interface Dimension {
   value_mm: number;
   /** standard uncertainty; null where the fit's error is unknown */
   uncertainty_mm: number | null;
-  posture: Posture;
+  posture: "standard" | "scanned";
+  figure: Figure;
   kind: "tape" | "line" | "height" | "extent";
   /** corners of the tape or line, scan frame and units */
   course: Vec3[];
@@ -50,6 +51,8 @@ export interface MeasurementsReport {
 export interface Measurements extends MeasurementsReport {
   /** the body re-posed, standing where the scan stands; body frame, metres */
   standing: Mesh;
+  /** likewise, sitting */
+  seated: Mesh;
 }
 
 /** What can be exported: the format's name on the command line ("measurements": always written), and its files. */

@@ -1,6 +1,6 @@
 // What the Measurements part of the results shows, as signals; only the functions here write them.
 import { batch, computed, effect, signal } from "@preact/signals";
-import type { Dimension, Measurements, Posture, Section } from "../core/measurements";
+import type { Dimension, Figure, Measurements, Section } from "../core/measurements";
 import { CoreError, type ResultData, type Vec3 } from "../core/types";
 import { save } from "../result/download";
 import { displayName } from "../result/format";
@@ -13,7 +13,8 @@ export const half = signal<"distances" | "measurements">("distances");
 export const measurements = signal<Measurements | null>(null);
 /** Why there are no measurements, in the core's words. */
 export const trouble = signal("");
-export const posture = signal<Posture>("standard");
+/** The body that is looked at. */
+export const figure = signal<Figure>("standing");
 /** id of the dimension that is drawn */
 export const selected = signal<string | null>(null);
 /** A profile, and which of its sections is drawn. */
@@ -59,9 +60,9 @@ const looking = computed(
   () => half.value === "measurements" && state.stage.value === "results" && measurements.value !== null,
 );
 
-/** The dimensions of the chosen posture. */
+/** The dimensions taken on the chosen body. */
 export const dimensions = computed<Dimension[]>(
-  () => measurements.value?.dimensions.filter((each) => each.posture === posture.value) ?? [],
+  () => measurements.value?.dimensions.filter((each) => each.figure === figure.value) ?? [],
 );
 
 export const selectedDimension = computed(
@@ -73,19 +74,20 @@ const section = computed(() => {
   return at === null ? null : (sections[at] ?? null);
 });
 
-/** Whether the view holds the body re-posed to stand instead of the scan's. */
-const standing = computed(() => looking.value && posture.value === "standard" && section.value === null);
+/** Whether the view holds the body re-posed instead of as scanned. */
+const reposed = computed(() => looking.value && figure.value !== "scanned" && section.value === null);
 
 /** The body in the 3D view; plain where something is to be drawn on it. */
 export const shownBody = computed(() => {
   const body = state.shownBody.value;
   if (!body || !looking.value) return body;
-  const mesh = standing.value ? measurements.value!.standing : body.mesh;
+  const { standing, seated } = measurements.value!;
+  const mesh = !reposed.value ? body.mesh : figure.value === "sitting" ? seated : standing;
   return { mesh, errorsMm: null };
 });
 
 export const shownView = computed<state.ViewOptions>(() =>
-  standing.value
+  reposed.value
     ? { ...state.shownView.value, showScan: false, showBody: true, split: false, bodyOpacity: 1 }
     : state.shownView.value,
 );

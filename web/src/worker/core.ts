@@ -237,7 +237,11 @@ export class Core {
     return this.withText(meshFormat, (text) => this.listed(this.module._vitruvian_files_report(text)));
   }
 
-  measure(): MeasurementsReport & { standing: ArrayReference; faces: ArrayReference } {
+  measure(): MeasurementsReport & {
+    standing: ArrayReference;
+    seated: ArrayReference;
+    faces: ArrayReference;
+  } {
     return this.json(this.module._vitruvian_measurements_report());
   }
 

@@ -1,7 +1,7 @@
 // The worker: holds the core and the networks, answers the page's calls one after the other (a cancel at once).
 import type { Calls, EnergyPoint, Kind, Reply, Request } from "../core/messages";
 import { CoreError, type Findings, type ScanData } from "../core/types";
-import { Core } from "./core";
+import { type ArrayReference, Core } from "./core";
 import { answerEditor } from "./editor";
 import type { Networks } from "./networks";
 import { bodyOf, lessonOf, poseBody } from "./teaching";
@@ -132,8 +132,12 @@ const handlers: Handlers = {
 
   async measure() {
     const core = theCore();
-    const { standing, faces, ...report } = core.measure();
-    return { ...report, standing: { positions: core.floats(standing), indices: core.integers(faces) } };
+    const { standing, seated, faces, ...report } = core.measure();
+    const mesh = (positions: ArrayReference) => ({
+      positions: core.floats(positions),
+      indices: core.integers(faces),
+    });
+    return { ...report, standing: mesh(standing), seated: mesh(seated) };
   },
 
   async profile({ segment, count }) {

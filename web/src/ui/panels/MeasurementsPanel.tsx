@@ -1,14 +1,22 @@
 import { useSignal } from "@preact/signals";
-import { type Dimension, EXPORTS, type Posture } from "../../core/measurements";
+import { type Dimension, EXPORTS, type Figure } from "../../core/measurements";
 import { displayName } from "../../result/format";
 import { Choice } from "../Choice";
 import * as measuring from "../measuring";
 import { Profile } from "../ProfilePlot";
 
-const POSTURES: [Posture, string][] = [
-  ["standard", "Standing"],
+const FIGURES: [Figure, string][] = [
+  ["standing", "Standing"],
+  ["sitting", "Sitting"],
   ["scanned", "As scanned"],
 ];
+
+const WORDS: Record<Figure, string> = {
+  standing: "Re-posed to stand upright, arms 20 degrees from the vertical, as the standards want.",
+  sitting: "Re-posed to sit upright, thighs level, lower legs vertical. No chair presses the flesh.",
+  scanned:
+    "In the pose of the scan: tapes and lines over the same points of the skin. Heights have no meaning here.",
+};
 
 const GROUPS: [Dimension["kind"], string][] = [
   ["tape", "Girths and arcs"],
@@ -37,17 +45,13 @@ export function MeasurementsPanel() {
     <>
       <Choice
         label="Body"
-        value={measuring.posture.value}
-        options={POSTURES}
+        value={measuring.figure.value}
+        options={FIGURES}
         onChange={(value) => {
-          measuring.posture.value = value;
+          measuring.figure.value = value;
         }}
       />
-      <p class="quiet">
-        {measuring.posture.value === "standard"
-          ? "Re-posed to stand upright, arms 20 degrees from the vertical, as the standards want."
-          : "In the pose of the scan: tapes and lines over the same points of the skin. Heights have no meaning here."}
-      </p>
+      <p class="quiet">{WORDS[measuring.figure.value]}</p>
       <label class="row">
         Find
         <input
