@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "editor/found_joints.h"
 #include "editor/joint_edits.h"
 #include "editor/line_of_sight.h"
 #include "editor/project.h"
@@ -53,6 +54,19 @@ json sides(const json& request) {
   if (!request.contains("from")) return changes_to_json(swapped_sides(keypoints, locked));
   const BodySide from = value_of(request).at("from").text() == "left" ? BodySide::left : BodySide::right;
   return changes_to_json(mirrored_limbs(keypoints, from, locked));
+}
+
+/// The found keypoints, in the scan frame, as they are to be edited.
+json found_keypoints(const json& request, const EditorContext& context) {
+  if (!context.pipeline) throw Error(ErrorCode::internal, "no keypoints have been looked for");
+  const Mat4d scan_from_body = alignment_from_json(value_of(request).at("body_from_scan")).inverse();
+  KeypointSet set;
+  for (const Keypoint& keypoint :
+       joints_of_model(context.pipeline->fit_model(), context.pipeline->targets())) {
+    if (!keypoint.position_m) continue;
+    set.joints[keypoint.joint] = {transformed(scan_from_body, *keypoint.position_m), keypoint.confidence};
+  }
+  return {{"keypoints", keypoint_set_to_json(set)}};
 }
 
 /// Keypoints of any frame in the scan's.
@@ -162,6 +176,7 @@ json Editor::answer(const json& request, const EditorContext& context) {
   if (what == "preview") return preview(request, context);
   if (what == "cut") return cut(request, context);
   if (what == "sides") return sides(request);
+  if (what == "found_keypoints") return found_keypoints(request, context);
   if (what == "import_keypoints") return import_keypoints(request);
   if (what == "save_project") return save_project(request, context);
   if (what == "open_project") return open_project(request, context);

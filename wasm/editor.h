@@ -7,6 +7,7 @@
 #include "geometry/mesh.h"
 #include "io/scan.h"
 #include "pipeline/models.h"
+#include "pipeline/pipeline.h"
 #include "pipeline/settings.h"
 
 namespace vitruvian::wasm {
@@ -17,6 +18,7 @@ struct EditorContext {
   const Scan& scan;
   const DecimatedMesh& shown;  ///< the scan as the view draws it, relative to its origin
   const Settings& settings;
+  const RegistrationPipeline* pipeline;  ///< null before anything was worked
 };
 
 /// The page's editors: sight lines, left and right, the live preview, project files. Requests and answers are

@@ -211,8 +211,8 @@ std::string Session::findings_report() {
 std::string Session::edit(const std::string& request) {
   task_.require_idle();
   if (!scan_) throw Error(ErrorCode::usage, "open a scan first");
-  return text_of(
-      editor_.answer(parse_json(request, "editor"), {models_.models(), *scan_, shown_, settings_}));
+  return text_of(editor_.answer(parse_json(request, "editor"),
+                                {models_.models(), *scan_, shown_, settings_, pipeline_.get()}));
 }
 
 std::string Session::files_report(const std::string& mesh_format) {

@@ -1,7 +1,7 @@
 // What the user can do in the editor. Every change is an edit that can be undone, saved and replayed.
 import { batch, effect } from "@preact/signals";
 import type { Crop, KeypointSet } from "../core/edits";
-import { CoreError, type Keypoint, type Matrix, type Vec3 } from "../core/types";
+import { CoreError, type Matrix, type Vec3 } from "../core/types";
 import { save, stem } from "../result/download";
 import { displayName } from "../result/format";
 import { askEditor, change, register, run } from "../ui/actions";
@@ -52,15 +52,6 @@ effect(() => {
   if (page.scan.value === null) forget();
 });
 
-/** The found keypoints as a set in the scan frame. */
-async function inScan(found: readonly Keypoint[], body_from_scan: Matrix): Promise<KeypointSet> {
-  const joints: KeypointSet["joints"] = {};
-  for (const { joint, position_m, confidence } of found)
-    if (position_m) joints[joint] = { position: position_m, confidence };
-  const text = JSON.stringify({ frame: "body", joints });
-  return (await askEditor({ do: "import_keypoints", text, name: "keypoints", body_from_scan })).keypoints;
-}
-
 export async function open(tool: state.Tool): Promise<void> {
   const needed = tool === "joints" ? "keypoints" : "align";
   try {
@@ -72,8 +63,9 @@ export async function open(tool: state.Tool): Promise<void> {
       state.base.value = { body_from_scan: align.body_from_scan, found: keypoints?.joints ?? [] };
     }
     if (tool === "joints" && !state.edited.value.keypoints) {
-      const { found, body_from_scan } = state.base.value;
-      push({ edit: "keypoints", keypoints: await inScan(found, body_from_scan), label: FOUND });
+      const { body_from_scan } = state.base.value;
+      const { keypoints } = await askEditor({ do: "found_keypoints", body_from_scan });
+      push({ edit: "keypoints", keypoints, label: FOUND });
     }
     state.tool.value = tool;
   } catch (error) {

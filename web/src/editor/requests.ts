@@ -44,6 +44,8 @@ interface Exchanges {
     request: { keypoints: KeypointSet; locked: string[]; from?: "left" | "right" };
     answer: { joints: JointChanges };
   };
+  /** The joints that were found, where the model has them; after the stage "keypoints". */
+  found_keypoints: { request: { body_from_scan: Matrix }; answer: { keypoints: KeypointSet } };
   import_keypoints: {
     request: { text: string; name: string; body_from_scan: Matrix };
     answer: { keypoints: KeypointSet };
