@@ -24,17 +24,19 @@ else()
 endif()
 option(VITRUVIAN_PRECOMPILE "Precompile Eigen's and the standard library's headers" ${precompile})
 
-# Lets TARGET use the precompiled header; the first target that asks makes it for all.
-function(vitruvian_precompile target)
+# vitruvian_precompile(TARGET SET LIBRARY [HEADER...]): lets TARGET use the precompiled headers, and HEADERs of LIBRARY too;
+# the first target that asks makes them for all of its SET.
+function(vitruvian_precompile target set library)
   if(NOT VITRUVIAN_PRECOMPILE)
     return()
   endif()
-  if(NOT TARGET vitruvian_precompiled)
-    file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cpp "")
-    add_library(vitruvian_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
-    target_link_libraries(vitruvian_precompiled PRIVATE third_party)
-    target_precompile_headers(vitruvian_precompiled PRIVATE <Eigen/Dense> <array> <cstdint> <functional> <memory>
-      <optional> <span> <stdexcept> <string> <string_view> <utility> <vector>)
+  set(name vitruvian_precompiled_${set})
+  if(NOT TARGET ${name})
+    file(WRITE ${CMAKE_BINARY_DIR}/${name}.cpp "")
+    add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/${name}.cpp)
+    target_link_libraries(${name} PRIVATE third_party ${library})
+    target_precompile_headers(${name} PRIVATE <Eigen/Dense> <array> <cstdint> <functional> <memory>
+      <nlohmann/json.hpp> <optional> <span> <stdexcept> <string> <string_view> <utility> <vector> ${ARGN})
   endif()
-  target_precompile_headers(${target} REUSE_FROM vitruvian_precompiled)
+  target_precompile_headers(${target} REUSE_FROM ${name})
 endfunction()
