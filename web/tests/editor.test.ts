@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { EMPTY, folded, made, redone, undone } from "../src/editor/history";
+import { EMPTY, edits as editsOf, folded, made, redone, type Step, undone } from "../src/editor/history";
 import type { Edit } from "../src/editor/requests";
 import { BONES, JOINTS, limbOf } from "../src/editor/skeleton";
 
@@ -29,6 +29,17 @@ test("every edit can be undone and made again, until another is made", () => {
   history = made(history, edits[3]!);
   expect(history).toEqual({ done: [edits[0], edits[1], edits[3]], undone: [] });
   expect(redone(history)).toEqual(history);
+});
+
+test("locks are undone like edits, and are no part of a project", () => {
+  const lock = (joint: string, locked: boolean): Step => ({ edit: "lock", joint, locked });
+  const steps = [...edits, lock("head", true), lock("neck", true), lock("head", false)];
+  let history = steps.reduce(made, EMPTY);
+  expect([...folded(history.done).locked]).toEqual(["neck"]);
+  expect(editsOf(history.done)).toEqual(edits);
+  history = undone(history);
+  expect([...folded(history.done).locked]).toEqual(["head", "neck"]);
+  expect(folded(history.done).keypoints).toEqual(folded(edits).keypoints);
 });
 
 test("a limb is a joint with all that hangs on it", () => {

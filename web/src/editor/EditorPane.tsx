@@ -86,6 +86,14 @@ export function EditorPane() {
   const view = useSignal<EditorView | null>(null);
   const failed = useSignal("");
   const lasso = useSignal<Lasso | null>(null);
+  const hovered = useSignal<{ pane: PaneName; joint: Joint } | null>(null);
+  /** The joint whose name a pane shows: that under the pointer, else the chosen one. */
+  const named = (pane: PaneName) =>
+    state.tool.value !== "joints"
+      ? null
+      : hovered.value?.pane === pane
+        ? hovered.value.joint
+        : state.selected.value;
 
   useEffect(() => {
     const element = (name: PaneName) => root.current!.querySelector<HTMLElement>(`[data-pane=${name}]`)!;
@@ -117,6 +125,14 @@ export function EditorPane() {
     view.value.setJoints(
       state.tool.value === "joints" && state.bodyFromScan.value ? shownJoints(view.value) : [],
     );
+  });
+  useEffect(() => {
+    const current = view.value;
+    if (current) current.onDrawn = () => placeNames(root.current!, current);
+  }, [view.value]);
+  // Other names stand elsewhere.
+  useEffect(() => {
+    if (view.value) placeNames(root.current!, view.value);
   });
   useSignalEffect(() => {
     // Undo, redo and new edits pose the body anew; a drag does so itself.
@@ -164,12 +180,26 @@ export function EditorPane() {
     state.selected.value = joint.joint;
     if (joint.locked) return;
     const drag = new JointDrag(current, pane, joint, event.offsetX, event.offsetY);
+    current.setForemost(name);
     follow(
       this,
       event,
       (moved) => drag.move(moved.offsetX, moved.offsetY, moved.shiftKey),
-      () => drag.end(),
+      () => {
+        current.setForemost(null);
+        drag.end();
+      },
     );
+  }
+
+  function onPointerMove(event: PointerEvent): void {
+    const current = view.peek();
+    const element = event.currentTarget as HTMLElement;
+    const pane = element.dataset.pane as PaneName;
+    if (!current || event.buttons !== 0 || state.tool.peek() !== "joints") return;
+    const joint = current.jointAt(current.pane(pane), event.offsetX, event.offsetY, event.pointerType);
+    element.classList.toggle("over-joint", joint !== null && !joint.locked);
+    if (joint?.joint !== hovered.peek()?.joint) hovered.value = joint && { pane, joint: joint.joint };
   }
 
   /** Follows a pointer until it is lifted. */
@@ -267,9 +297,16 @@ export function EditorPane() {
           tabIndex={0}
           role="application"
           onKeyDown={onKeyDown}
+          onPointerMove={onPointerMove}
+          onPointerLeave={() => {
+            hovered.value = null;
+          }}
           aria-label={`${NAMES[name]}. ${help(state.tool.value, state.selected.value)}`}
         >
           <span class="pane-name">{NAMES[name]}</span>
+          <span class="joint-name" data-joint={named(name)} aria-hidden="true" hidden>
+            {displayName(named(name) ?? "")}
+          </span>
           {lasso.value?.pane === name && (
             <svg class="lasso" aria-hidden="true">
               <polygon points={lasso.value.points.join(" ")} />
@@ -284,6 +321,19 @@ export function EditorPane() {
       )}
     </div>
   );
+}
+
+/** Puts each pane's name next to its joint. */
+function placeNames(root: HTMLElement, view: EditorView): void {
+  for (const label of root.querySelectorAll<HTMLElement>(".joint-name")) {
+    const pane = view.pane(label.parentElement!.dataset.pane as PaneName);
+    const place = view.placeOf(label.dataset.joint);
+    label.hidden = !place;
+    if (!place) continue;
+    const { x, y } = pane.pixel(place);
+    label.style.left = `${x}px`;
+    label.style.top = `${y}px`;
+  }
 }
 
 function help(tool: state.Tool | null, joint: Joint): string {

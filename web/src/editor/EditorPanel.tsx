@@ -162,7 +162,7 @@ function Joints() {
         </button>
       </div>
       {preview && (
-        <p class="quiet" data-rate={preview.rate}>
+        <p class="quiet" data-rate={preview.rate} data-answer-ms={preview.answerMs.toFixed(1)}>
           The posed body's joints lie {millimetres(preview.errorMm)} mm from these on average.
         </p>
       )}

@@ -6,7 +6,7 @@ import { save, stem } from "../result/download";
 import { displayName } from "../result/format";
 import { askEditor, change, register, run } from "../ui/actions";
 import * as page from "../ui/state";
-import { EMPTY, made, redone, undone } from "./history";
+import { EMPTY, edits, made, redone, type Step, undone } from "./history";
 import type { Edit, EditorRequest, JointChanges } from "./requests";
 import { type Joint, limbOf } from "./skeleton";
 import * as state from "./state";
@@ -19,10 +19,10 @@ function fail(error: unknown): void {
   state.trouble.value = error instanceof Error ? error.message : String(error);
 }
 
-function push(edit: Edit): void {
+function push(step: Step): void {
   batch(() => {
     state.trouble.value = "";
-    state.history.value = made(state.history.value, edit);
+    state.history.value = made(state.history.value, step);
   });
 }
 
@@ -43,7 +43,6 @@ export function forget(): void {
     state.preview.value = null;
     state.rest.value = null;
     state.dragged.value = null;
-    state.locked.value = new Set();
     state.trouble.value = "";
   });
 }
@@ -90,8 +89,8 @@ export function touched(): ReadonlySet<string> {
 
 /** Edits that change something: keypoints as they were found are left to be found again. */
 function effective(): Edit[] {
-  if (touched().size > 0) return [...state.history.value.done];
-  return state.history.value.done.filter(({ edit }) => edit !== "keypoints" && edit !== "joints");
+  const all = edits(state.history.value.done);
+  return touched().size > 0 ? all : all.filter(({ edit }) => edit !== "keypoints" && edit !== "joints");
 }
 
 /** Hands the edits to the registration; stages that they change become out of date. */
@@ -140,6 +139,7 @@ async function answerAll(): Promise<void> {
     const request = next;
     next = null;
     try {
+      const asked = performance.now();
       const answer = await askEditor(request);
       const now = performance.now();
       times = [...times.filter((time) => now - time < 1000), now];
@@ -149,6 +149,7 @@ async function answerAll(): Promise<void> {
           joints: answer.joints,
           errorMm: answer.error_mm,
           rate: times.length,
+          answerMs: now - asked,
         };
         if (request.sight && answer.moved && state.dragged.value)
           state.dragged.value = moved(request.sight.joint as Joint, answer.moved, state.dragged.value);
@@ -258,9 +259,13 @@ export function leaveOut(joint: Joint): void {
 }
 
 export function lock(joint: Joint): void {
-  const locked = new Set(state.locked.value);
-  if (!locked.delete(joint)) locked.add(joint);
-  state.locked.value = locked;
+  const locked = !state.locked.value.has(joint);
+  push({
+    edit: "lock",
+    joint,
+    locked,
+    label: `${locked ? "Lock" : "Unlock"} ${displayName(joint).toLowerCase()}`,
+  });
 }
 
 /* ---- how the scan lies, and what is cut away ---- */

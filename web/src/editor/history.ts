@@ -3,15 +3,24 @@ import type { Crop, KeypointSet, RegionSet } from "../core/edits";
 import type { Matrix } from "../core/types";
 import type { Edit } from "./requests";
 
+/** Locks a joint in its place, or frees it: undone like an edit, but nothing that a project replays. */
+export interface Lock {
+  edit: "lock";
+  joint: string;
+  locked: boolean;
+  label?: string;
+}
+export type Step = Edit | Lock;
+
 export interface History {
-  readonly done: readonly Edit[];
-  readonly undone: readonly Edit[];
+  readonly done: readonly Step[];
+  readonly undone: readonly Step[];
 }
 
 export const EMPTY: History = { done: [], undone: [] };
 
-export function made({ done }: History, edit: Edit): History {
-  return { done: [...done, edit], undone: [] };
+export function made({ done }: History, step: Step): History {
+  return { done: [...done, step], undone: [] };
 }
 
 export function undone({ done, undone }: History): History {
@@ -30,16 +39,24 @@ export interface Edited {
   crops: Crop[];
   keypoints: KeypointSet | null;
   regions: RegionSet | null;
+  locked: ReadonlySet<string>;
 }
 
-/** The same as with_edits() of core/editor/project.h. */
-export function folded(edits: readonly Edit[]): Edited {
-  const result: Edited = { body_from_scan: null, crops: [], keypoints: null, regions: null };
-  for (const edit of edits) {
+/** What a project holds. */
+export function edits(steps: readonly Step[]): Edit[] {
+  return steps.filter((step): step is Edit => step.edit !== "lock");
+}
+
+/** The same as with_edits() of core/editor/project.h, and the locks. */
+export function folded(steps: readonly Step[]): Edited {
+  const locked = new Set<string>();
+  const result: Edited = { body_from_scan: null, crops: [], keypoints: null, regions: null, locked };
+  for (const edit of steps) {
     if (edit.edit === "align") result.body_from_scan = edit.body_from_scan;
     else if (edit.edit === "crop") result.crops.push(cropOf(edit));
     else if (edit.edit === "keypoints") result.keypoints = edit.keypoints;
     else if (edit.edit === "regions") result.regions = edit.regions;
+    else if (edit.edit === "lock") edit.locked ? locked.add(edit.joint) : locked.delete(edit.joint);
     else {
       const joints = { ...result.keypoints?.joints };
       for (const [name, joint] of Object.entries(edit.joints)) {

@@ -16,7 +16,7 @@ export const base = signal<{ body_from_scan: Matrix; found: readonly Keypoint[] 
 export const bodyFromScan = computed(() => edited.value.body_from_scan ?? base.value?.body_from_scan ?? null);
 
 export const selected = signal<Joint>("pelvis");
-export const locked = signal<ReadonlySet<string>>(new Set());
+export const locked = computed(() => edited.value.locked);
 export const wholeLimb = signal(false);
 export const snaps = signal(true);
 /** Joints while they are dragged; null: as edited. */
@@ -29,6 +29,8 @@ export interface Preview {
   errorMm: number;
   /** previews in the last second */
   rate: number;
+  /** from the question to the answer */
+  answerMs: number;
 }
 export const preview = signal<Preview | null>(null);
 export const showBody = signal(true);

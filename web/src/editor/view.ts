@@ -20,6 +20,8 @@ import { bodyObject, clear, scanObject } from "../viewer/parts";
 import { JointsObject, type ShownJoint } from "./joints_object";
 import { Pane, type PaneName } from "./panes";
 
+/** Milliseconds after which the panes without the pointer are drawn again during a drag. */
+const OTHERS_MS = 400;
 /** Pixels within which a pointer takes a joint: mouse, and fingers. */
 const REACH = { mouse: 14, touch: 28 };
 
@@ -35,6 +37,11 @@ export class EditorView {
   private shown: readonly ShownJoint[] = [];
   private frame = 0;
   private fitted = false;
+  /** While a pointer drags in one pane, the others are drawn more rarely: without a graphics card each costs. */
+  private foremost: PaneName | null = null;
+  private allDrawn = 0;
+  /** Called after the panes were drawn. */
+  onDrawn: () => void = () => {};
   /** Called before a pane is drawn, to show what belongs into it alone. */
   beforePane: (pane: Pane) => void = () => {};
 
@@ -43,8 +50,9 @@ export class EditorView {
     private readonly canvas: HTMLCanvasElement,
     elements: Record<PaneName, HTMLElement>,
   ) {
-    // Three pictures at once: smooth edges would cost machines without a graphics card seconds.
-    this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: true });
+    // Three pictures at once: smooth edges would cost machines without a graphics card seconds. What was drawn is
+    // kept, so that one of them can be drawn alone.
+    this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.outputColorSpace = SRGBColorSpace;
     this.renderer.setScissorTest(true);
@@ -142,6 +150,11 @@ export class EditorView {
     return direction.clone().transformDirection(inverse).toArray();
   }
 
+  /** Where a joint is drawn; null when it is not. */
+  placeOf(joint: string | undefined): Vector3 | null {
+    return this.shown.find((each) => each.joint === joint)?.position ?? null;
+  }
+
   pane(name: PaneName): Pane {
     return this.panes.find((pane) => pane.name === name)!;
   }
@@ -172,6 +185,12 @@ export class EditorView {
     this.request();
   }
 
+  /** @param name  the pane that a pointer drags in; null: none */
+  setForemost(name: PaneName | null): void {
+    this.foremost = name;
+    this.request();
+  }
+
   request(): void {
     if (this.frame !== 0) return;
     this.frame = requestAnimationFrame(() => {
@@ -196,10 +215,19 @@ export class EditorView {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
     const ratio = this.renderer.getPixelRatio();
-    if (this.canvas.width !== Math.floor(width * ratio) || this.canvas.height !== Math.floor(height * ratio))
+    if (
+      this.canvas.width !== Math.floor(width * ratio) ||
+      this.canvas.height !== Math.floor(height * ratio)
+    ) {
       this.renderer.setSize(width, height, false);
+      this.allDrawn = 0;
+    }
     const whole = this.canvas.getBoundingClientRect();
+    const now = performance.now();
+    const all = this.foremost === null || now - this.allDrawn > OTHERS_MS;
+    if (all) this.allDrawn = now;
     for (const pane of this.panes) {
+      if (!all && pane.name !== this.foremost) continue;
       const part = pane.element.getBoundingClientRect();
       const area = [part.left - whole.left, whole.bottom - part.bottom, part.width, part.height] as const;
       if (part.width === 0 || part.height === 0) continue;
@@ -208,5 +236,6 @@ export class EditorView {
       this.renderer.setScissor(...area);
       this.renderer.render(this.scene, pane.camera);
     }
+    this.onDrawn();
   }
 }
