@@ -130,7 +130,7 @@ prepare() {
   if [[ $parts == *" tests "* ]]; then
     run_step "native core and tests" build_preset native || status=1
   elif [[ $parts == *" native "* ]]; then
-    run_step "native core" build_preset native vitruvian vitruvian-landmarks || status=1
+    run_step "native core" build_preset native vitruvian vitruvian-landmarks vitruvian-make-scans || status=1
   fi
   if [[ -n $models ]] && ! run_step "models (log: build/models.log)" wait $models; then
     tail -n 20 "$BUILD/models.log" >&2
