@@ -7,6 +7,7 @@
 #include "base/sha256.h"
 #include "io/mesh_writer.h"
 #include "measured_report.h"
+#include "pipeline/body_parameters.h"
 #include "pipeline/report.h"
 #include "pipeline/result_json.h"
 #include "pipeline/result_json_value.h"
@@ -42,6 +43,7 @@ void Session::use_models(const std::string& known_landmarks) {
   pipeline_.reset();
   drop_result();
   editor_.reset();
+  painter_.reset();
   request_.reset();
   task_.start([this, known_landmarks] {
     task_.execution().progress("model", -1);
@@ -59,6 +61,7 @@ void Session::open(Buffer file, std::string name) {
   scan_.reset();
   shown_ = {};
   editor_.reset();
+  painter_.reset();
   // std::function wants what it holds to be copyable.
   auto held = std::make_shared<Buffer>(std::move(file));
   task_.start([this, held, name = std::move(name)] {
@@ -211,8 +214,18 @@ std::string Session::findings_report() {
 std::string Session::edit(const std::string& request) {
   task_.require_idle();
   if (!scan_) throw Error(ErrorCode::usage, "open a scan first");
-  return text_of(editor_.answer(parse_json(request, "editor"),
-                                {models_.models(), *scan_, shown_, settings_, pipeline_.get()}));
+  const nlohmann::json asked = parse_json(request, "editor");
+  if (Painter::takes(asked)) return text_of(paint(asked));
+  return text_of(editor_.answer(asked, {models_.models(), *scan_, shown_, settings_, pipeline_.get()}));
+}
+
+nlohmann::json Session::paint(const nlohmann::json& request) {
+  if (!holds(PipelineStage::pose)) throw Error(ErrorCode::usage, "pose the body first");
+  const bool is_fitted = registration_ && registration_->parameters;
+  const BodyState posed =
+      is_fitted ? state_of(models_.models().body, *registration_->parameters) : pipeline_->initial_pose();
+  return painter_.answer(request, {models_.models(), *scan_, shown_, posed,
+                                   pipeline_->align_finding().alignment.body_from_scan});
 }
 
 std::string Session::files_report(const std::string& mesh_format) {

@@ -13,6 +13,7 @@
 #include "io/scan.h"
 #include "measured/export_files.h"
 #include "model_shelf.h"
+#include "painter.h"
 #include "pipeline/pipeline.h"
 #include "task.h"
 #include "teaching_json.h"
@@ -56,7 +57,7 @@ class Session {
 
   /// `{"align", "keypoints", "pose", "result"}` of the stages that are reached, null for the others.
   std::string findings_report();
-  /// Answers a request of the page's editors (class Editor) about the opened scan.
+  /// Answers a request of the page's editors (classes Editor, Painter) about the opened scan.
   std::string edit(const std::string& request);
   /// `{"files": [{"name", "data"}]}`: what the command line writes, with the mesh as "ply", "obj" or "glb".
   std::string files_report(const std::string& mesh_format);
@@ -82,6 +83,7 @@ class Session {
   void advance();
   void keep_result();
   void drop_result();
+  nlohmann::json paint(const nlohmann::json& request);
   const MeasuredRegistration& measured();
   std::string describe_files(std::vector<ExportedFile> files);
   nlohmann::json describe_pose();
@@ -108,6 +110,7 @@ class Session {
   std::optional<Lesson> lesson_;
   std::optional<Lesson> unchanged_;  ///< the lesson with nothing changed, to compare with
   Editor editor_;
+  Painter painter_;
 };
 
 }  // namespace vitruvian::wasm

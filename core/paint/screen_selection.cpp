@@ -131,4 +131,17 @@ std::vector<int> ScreenSelection::lasso(const std::vector<ScreenPoint>& outline)
   });
 }
 
+int ScreenSelection::nearest(const ScreenPoint& point, double reach) const {
+  int found = -1;
+  double least = reach;
+  for (const int i : seen_) {
+    const double distance = (ScreenPoint(screen_(0, i), screen_(1, i)) - point).norm();
+    if (found < 0 ? distance <= least : distance < least) {
+      found = i;
+      least = distance;
+    }
+  }
+  return found;
+}
+
 }  // namespace vitruvian

@@ -26,6 +26,8 @@ class ScreenSelection {
   std::vector<int> brush(const ScreenPoint& from, const ScreenPoint& to, double radius) const;
   /// Vertices seen inside a closed outline (even-odd rule; fewer than three corners: none), ascending.
   std::vector<int> lasso(const std::vector<ScreenPoint>& outline) const;
+  /// The vertex seen nearest to a point, the first of several; -1 when none is within `reach` pixels.
+  int nearest(const ScreenPoint& point, double reach) const;
   /// All vertices seen, ascending.
   const std::vector<int>& seen() const { return seen_; }
 
