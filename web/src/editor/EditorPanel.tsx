@@ -1,16 +1,23 @@
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect } from "preact/hooks";
+import * as painting from "../paint/painting";
+import * as paint from "../paint/state";
 import { displayName, millimetres } from "../result/format";
+import { lazyPart } from "../ui/lazy";
 import { busy } from "../ui/state";
 import * as editing from "./editing";
+import { FileButton } from "./FileButton";
 import { JOINTS } from "./skeleton";
 import * as state from "./state";
 import { alignHandles, boxHandles } from "./tools";
+
+const PaintPanel = lazyPart(async () => (await import("../paint/PaintPanel")).PaintPanel);
 
 const TOOLS: [state.Tool, string][] = [
   ["joints", "Joints"],
   ["align", "Align"],
   ["cut", "Cut away"],
+  ["paint", "Regions"],
 ];
 
 export function EditorPanel() {
@@ -18,8 +25,9 @@ export function EditorPanel() {
   useEffect(() => {
     const onKeyDown = (event: KeyboardEvent) => {
       if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
-      if (event.key.toLowerCase() === "z") event.shiftKey ? editing.redo() : editing.undo();
-      else if (event.key.toLowerCase() === "y") editing.redo();
+      const { undo, redo } = state.tool.value === "paint" ? painting : editing;
+      if (event.key.toLowerCase() === "z") event.shiftKey ? redo() : undo();
+      else if (event.key.toLowerCase() === "y") redo();
       else return;
       event.preventDefault();
     };
@@ -27,6 +35,8 @@ export function EditorPanel() {
     return () => removeEventListener("keydown", onKeyDown);
   }, []);
   const { done, undone } = state.history.value;
+  const painted = state.tool.value === "paint";
+  const ready = done.length > 0 || (painted && paint.completeness.value.whole > 0);
   return (
     <div class="editor-panel">
       <fieldset class="buttons tabs" aria-label="Tool">
@@ -50,28 +60,32 @@ export function EditorPanel() {
       {state.tool.value === "joints" && <Joints />}
       {state.tool.value === "align" && <Align />}
       {state.tool.value === "cut" && <Cut />}
-      <div class="buttons">
-        <button type="button" disabled={done.length === 0} onClick={editing.undo} title="Ctrl+Z">
-          Undo
-        </button>
-        <button type="button" disabled={undone.length === 0} onClick={editing.redo} title="Ctrl+Shift+Z">
-          Redo
-        </button>
-      </div>
+      {painted ? (
+        <PaintPanel />
+      ) : (
+        <div class="buttons">
+          <button type="button" disabled={done.length === 0} onClick={editing.undo} title="Ctrl+Z">
+            Undo
+          </button>
+          <button type="button" disabled={undone.length === 0} onClick={editing.redo} title="Ctrl+Shift+Z">
+            Redo
+          </button>
+        </div>
+      )}
       <div class="buttons">
         <button
           type="button"
           class="main"
-          disabled={working || done.length === 0}
+          disabled={working || !ready}
           onClick={() => void editing.registerEdited()}
         >
-          Register with these edits
+          Register with these {painted ? "regions" : "edits"}
         </button>
         <button
           type="button"
           onClick={() => {
-            void editing.apply();
             editing.close();
+            void editing.apply();
           }}
         >
           Done
@@ -323,29 +337,5 @@ function Check({ label, signal }: { label: ComponentChildren; signal: { value: b
       />
       {label}
     </label>
-  );
-}
-
-export function FileButton({ label, onFile }: { label: string; onFile: (file: File) => void }) {
-  const input = useRef<HTMLInputElement>(null);
-  return (
-    <>
-      <button type="button" disabled={busy.value !== null} onClick={() => input.current?.click()}>
-        {label}
-      </button>
-      <input
-        ref={input}
-        class="hidden"
-        type="file"
-        accept=".json,application/json"
-        aria-label={label}
-        tabIndex={-1}
-        onChange={(event) => {
-          const file = event.currentTarget.files?.[0];
-          event.currentTarget.value = "";
-          if (file) onFile(file);
-        }}
-      />
-    </>
   );
 }

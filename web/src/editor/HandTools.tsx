@@ -1,7 +1,7 @@
 import type { Stage } from "../core/types";
 import { busy, scan } from "../ui/state";
-import { FileButton } from "./EditorPanel";
 import * as editing from "./editing";
+import { FileButton } from "./FileButton";
 import * as state from "./state";
 import { trouble } from "./state";
 
@@ -36,6 +36,8 @@ export function HandTools({ stage }: { stage: Stage }) {
         {stage === "align" && button("align", "Align by hand…")}
         {(stage === "keypoints" || stage === "pose" || stage === "results") &&
           button("joints", "Edit the joints…")}
+        {(stage === "pose" || stage === "register" || stage === "results") &&
+          button("paint", "Paint regions…")}
       </div>
     </section>
   );

@@ -1,7 +1,8 @@
 // What the user can do in the editor. Every change is an edit that can be undone, saved and replayed.
-import { batch, effect } from "@preact/signals";
+import { batch, effect, untracked } from "@preact/signals";
 import type { Crop, KeypointSet } from "../core/edits";
-import { CoreError, type Matrix, type Vec3 } from "../core/types";
+import { CoreError, type CoreStage, type Matrix, type Vec3 } from "../core/types";
+import * as painting from "../paint/painting";
 import { save, stem } from "../result/download";
 import { displayName } from "../result/format";
 import { askEditor, change, register, run } from "../ui/actions";
@@ -13,6 +14,14 @@ import * as state from "./state";
 
 /** Label of the edit that takes the found keypoints over. */
 const FOUND = "As found";
+
+/** What each tool starts from. */
+const NEEDED: Record<state.Tool, CoreStage> = {
+  joints: "keypoints",
+  align: "align",
+  cut: "align",
+  paint: "pose",
+};
 
 function fail(error: unknown): void {
   if (error instanceof CoreError && error.code === "cancelled") return;
@@ -44,16 +53,18 @@ export function forget(): void {
     state.rest.value = null;
     state.dragged.value = null;
     state.trouble.value = "";
+    painting.forget();
   });
 }
 
 effect(() => {
-  if (page.scan.value === null) forget();
+  if (page.scan.value === null) untracked(forget);
 });
 
 export async function open(tool: state.Tool): Promise<void> {
-  const needed = tool === "joints" ? "keypoints" : "align";
+  const needed = NEEDED[tool];
   try {
+    takePainting();
     if (!state.base.value || (tool === "joints" && state.base.value.found.length === 0)) {
       if (state.base.value) await apply();
       if (!page.found.value[needed]) await run(needed, page.stage.value);
@@ -66,6 +77,12 @@ export async function open(tool: state.Tool): Promise<void> {
       const { keypoints } = await askEditor({ do: "found_keypoints", body_from_scan });
       push({ edit: "keypoints", keypoints, label: FOUND });
     }
+    if (tool === "paint") {
+      await apply();
+      if (!page.found.value.pose) await run("pose", page.stage.value);
+      if (!page.found.value.pose) return;
+      await painting.open();
+    }
     state.tool.value = tool;
   } catch (error) {
     fail(error);
@@ -73,7 +90,18 @@ export async function open(tool: state.Tool): Promise<void> {
 }
 
 export function close(): void {
+  takePainting();
   state.tool.value = null;
+}
+
+/** What was painted becomes one edit. */
+function takePainting(): void {
+  if (state.tool.value !== "paint") return;
+  const regions = painting.toHandOver();
+  if (regions === undefined) return;
+  const count = regions?.pairs.length ?? 0;
+  const label = count === 0 ? "No regions" : count === 1 ? "Paint 1 region" : `Paint ${count} regions`;
+  push({ edit: "regions", regions, label });
 }
 
 /** Joints that were placed by hand. */
@@ -101,22 +129,23 @@ export async function apply(): Promise<void> {
     body_from_scan,
     crops: crops.length > 0 ? crops : null,
     keypoints: touched().size > 0 ? keypoints : null,
+    regions,
   };
   const had = {
     body_from_scan: settings.body_from_scan ?? null,
     crops: settings.crops ?? null,
     keypoints: settings.keypoints ?? null,
+    regions: settings.regions ?? null,
   };
-  const painted = regions ? { regions } : {};
   // A transform says units, up and front itself.
   const placed = body_from_scan ? ({ units: "auto", up: "auto", front: "auto" } as const) : {};
-  if (JSON.stringify(wanted) === JSON.stringify(had) && !regions) return;
-  await change({ ...wanted, ...painted, ...placed });
+  if (JSON.stringify(wanted) === JSON.stringify(had)) return;
+  await change({ ...wanted, ...placed });
 }
 
 export async function registerEdited(): Promise<void> {
-  await apply();
   close();
+  await apply();
   await register();
 }
 
@@ -317,6 +346,7 @@ export async function importKeypoints(file: File): Promise<void> {
 
 export async function saveProject(): Promise<void> {
   try {
+    takePainting();
     await apply();
     const { text } = await askEditor({ do: "save_project", edits: effective() });
     save(`${name()}.project.json`, new Blob([text]));

@@ -46,8 +46,8 @@ export class Pane {
     return Math.max(this.element.clientWidth, 1) / Math.max(this.element.clientHeight, 1);
   }
 
-  /** Brings a box into sight, seen from the pane's side. */
-  fit(box: Box3): void {
+  /** Brings a box into sight, seen from the pane's side or another one. */
+  fit(box: Box3, from: Vector3 = FROM[this.name]): void {
     const centre = box.getCenter(new Vector3());
     const size = box.getSize(new Vector3());
     const width = this.name === "front" ? size.x : this.name === "side" ? size.z : Math.hypot(size.x, size.z);
@@ -57,7 +57,7 @@ export class Pane {
       distance = half / Math.tan((this.camera.fov * Math.PI) / 360) + width / 2;
     else this.camera.zoom = 1 / half;
     this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(FROM[this.name], distance);
+    this.camera.position.copy(centre).addScaledVector(from, distance);
     this.resize();
     this.controls.update();
   }

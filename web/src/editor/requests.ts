@@ -1,6 +1,7 @@
 // What the editors ask of the core (wasm/editor.h). Positions and lines of sight are in the scan frame, scan units.
 import type { Crop, KeypointSet, RegionSet } from "../core/edits";
 import type { Matrix, Mesh, Settings, Vec3 } from "../core/types";
+import type { PaintExchanges } from "../paint/requests";
 
 export interface PlacedJoint {
   position: Vec3;
@@ -17,7 +18,7 @@ export type Edit = { label?: string } & (
   | { edit: "regions"; regions: RegionSet | null }
 );
 
-interface Exchanges {
+interface Exchanges extends PaintExchanges {
   /** Poses the body by the keypoints; `sight` first puts a joint in the middle of the body along a line. */
   preview: {
     request: {

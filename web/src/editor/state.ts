@@ -5,7 +5,7 @@ import type { Keypoint, Matrix, Mesh, Vec3 } from "../core/types";
 import { EMPTY, folded, type History } from "./history";
 import type { Joint } from "./skeleton";
 
-export type Tool = "joints" | "align" | "cut";
+export type Tool = "joints" | "align" | "cut" | "paint";
 /** null: the editor is closed */
 export const tool = signal<Tool | null>(null);
 export const history = signal<History>(EMPTY);

@@ -41,7 +41,7 @@ export function Inspector({ pick }: { pick: () => void }) {
       {stage === "pose" && <PosePanel />}
       {stage === "register" && <RegisterPanel />}
       {stage === "results" && <ResultsPanel />}
-      {stage !== "register" && <HandTools stage={stage} />}
+      <HandTools stage={stage} />
     </aside>
   );
 }

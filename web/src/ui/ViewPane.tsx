@@ -12,6 +12,7 @@ import { isDark } from "./theme";
 
 /** three.js and what draws with it are loaded when the editor is opened first. */
 const EditorPane = lazyPart(async () => (await import("../editor/EditorPane")).EditorPane);
+const PaintPane = lazyPart(async () => (await import("../paint/PaintPane")).PaintPane);
 
 const TURN = Math.PI / 24;
 const SIDES: [Direction, string][] = [
@@ -133,7 +134,7 @@ export function ViewPane() {
       {measuring.drawn.value && <p class="measured">{measuring.drawn.value.text}</p>}
       {probe.value && <p class="probe">{probe.value}</p>}
       <BusyNote />
-      {editorTool.value && <EditorPane />}
+      {editorTool.value && (editorTool.value === "paint" ? <PaintPane /> : <EditorPane />)}
     </section>
   );
 }

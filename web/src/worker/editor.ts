@@ -1,5 +1,6 @@
 // The editors' questions to the core, with arrays copied out of its memory.
 import type { EditorAnswer, EditorRequest } from "../editor/requests";
+import type { PaintExchanges } from "../paint/requests";
 import type { ArrayReference, Core } from "./core";
 
 interface CutReport {
@@ -10,6 +11,28 @@ interface CutReport {
 interface PreviewReport {
   body: ArrayReference;
   faces: ArrayReference;
+}
+
+interface PaintMeshReport extends Omit<PaintExchanges["paint_template"]["answer"], "mesh"> {
+  positions: ArrayReference;
+  indices: ArrayReference;
+  normals?: ArrayReference;
+  source?: ArrayReference;
+}
+interface SuggestReport {
+  names: string[];
+  scan: ArrayReference;
+  template: ArrayReference;
+}
+
+function paintMesh(core: Core, request: EditorRequest): EditorAnswer {
+  const { positions, normals, indices, source, ...answer } = core.edit<PaintMeshReport>(request);
+  const mesh = {
+    positions: core.floats(positions),
+    indices: core.integers(indices),
+    ...(normals && { normals: core.floats(normals) }),
+  };
+  return { ...answer, mesh, ...(source && { source: core.integers(source) }) };
 }
 
 export function answerEditor(core: Core, request: EditorRequest): EditorAnswer {
@@ -27,6 +50,13 @@ export function answerEditor(core: Core, request: EditorRequest): EditorAnswer {
         indices: core.integers(indices),
       },
     };
+  }
+  if (request.do === "paint_scan" || request.do === "paint_template") return paintMesh(core, request);
+  if (request.do === "paint_pick")
+    return { vertices: core.integers(core.edit<{ vertices: ArrayReference }>(request).vertices) };
+  if (request.do === "paint_suggest") {
+    const { names, scan, template } = core.edit<SuggestReport>(request);
+    return { names, scan: core.octets(scan), template: core.octets(template) };
   }
   return core.edit<EditorAnswer>(request);
 }
