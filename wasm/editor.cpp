@@ -166,6 +166,11 @@ json Editor::cut(const json& request, const EditorContext& context) {
     rest_.vertices.col(static_cast<Index>(i)) = context.shown.vertices.col(left[i]);
     rest_.normals.col(static_cast<Index>(i)) = context.shown.normals.col(left[i]);
   }
+  if (value_of(request).has("most_vertices")) {
+    const int most = static_cast<int>(value_of(request).at("most_vertices").whole(100, 1'000'000));
+    if (rest_.vertices.cols() > most)
+      rest_ = cluster_decimate(rest_.vertices, rest_.normals, rest_.faces, most);
+  }
   return {{"positions", array_reference(rest_.vertices.data(), rest_.vertices.size())},
           {"normals", array_reference(rest_.normals.data(), rest_.normals.size())},
           {"indices", array_reference(rest_.faces.data(), rest_.faces.size())}};

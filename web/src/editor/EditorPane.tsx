@@ -110,7 +110,8 @@ export function EditorPane() {
 
   useSignalEffect(() => {
     const opened = scan.value;
-    if (view.value && opened) view.value.setScan(state.rest.value ?? opened.mesh, opened.origin);
+    if (view.value && opened)
+      view.value.setScan(state.rest.value ?? opened.mesh, state.coarse.value, opened.origin);
   });
   useSignalEffect(() => {
     const matrix = state.bodyFromScan.value;
@@ -331,6 +332,7 @@ function placeNames(root: HTMLElement, view: EditorView): void {
     label.hidden = !place;
     if (!place) continue;
     const { x, y } = pane.pixel(place);
+    label.classList.toggle("leftward", x > pane.element.clientWidth / 2);
     label.style.left = `${x}px`;
     label.style.top = `${y}px`;
   }

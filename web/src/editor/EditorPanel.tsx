@@ -60,37 +60,7 @@ export function EditorPanel() {
       {state.tool.value === "joints" && <Joints />}
       {state.tool.value === "align" && <Align />}
       {state.tool.value === "cut" && <Cut />}
-      {painted ? (
-        <PaintPanel />
-      ) : (
-        <div class="buttons">
-          <button type="button" disabled={done.length === 0} onClick={editing.undo} title="Ctrl+Z">
-            Undo
-          </button>
-          <button type="button" disabled={undone.length === 0} onClick={editing.redo} title="Ctrl+Shift+Z">
-            Redo
-          </button>
-        </div>
-      )}
-      <div class="buttons">
-        <button
-          type="button"
-          class="main"
-          disabled={working || !ready}
-          onClick={() => void editing.registerEdited()}
-        >
-          Register with these {painted ? "regions" : "edits"}
-        </button>
-        <button
-          type="button"
-          onClick={() => {
-            editing.close();
-            void editing.apply();
-          }}
-        >
-          Done
-        </button>
-      </div>
+      {painted && <PaintPanel />}
       {done.length > 0 && (
         <details>
           <summary>{done.length === 1 ? "1 edit" : `${done.length} edits`}</summary>
@@ -110,6 +80,42 @@ export function EditorPanel() {
           Save project
         </button>
         <FileButton label="Open project…" onFile={(file) => void editing.openProject(file)} />
+      </div>
+      <div class="editor-actions">
+        <div class="buttons">
+          {!painted && (
+            <>
+              <button type="button" disabled={done.length === 0} onClick={editing.undo} title="Ctrl+Z">
+                Undo
+              </button>
+              <button
+                type="button"
+                disabled={undone.length === 0}
+                onClick={editing.redo}
+                title="Ctrl+Shift+Z"
+              >
+                Redo
+              </button>
+            </>
+          )}
+          <button
+            type="button"
+            class="main"
+            disabled={working || !ready}
+            onClick={() => void editing.registerEdited()}
+          >
+            Register with these {painted ? "regions" : "edits"}
+          </button>
+          <button
+            type="button"
+            onClick={() => {
+              editing.close();
+              void editing.apply();
+            }}
+          >
+            Done
+          </button>
+        </div>
       </div>
     </div>
   );
@@ -176,7 +182,12 @@ function Joints() {
         </button>
       </div>
       {preview && (
-        <p class="quiet" data-rate={preview.rate} data-answer-ms={preview.answerMs.toFixed(1)}>
+        <p
+          class="quiet"
+          data-rate={preview.rate}
+          data-work-ms={preview.workMs}
+          data-answer-ms={preview.answerMs}
+        >
           The posed body's joints lie {millimetres(preview.errorMm)} mm from these on average.
         </p>
       )}

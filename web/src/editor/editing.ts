@@ -12,6 +12,8 @@ import type { Edit, EditorRequest, JointChanges } from "./requests";
 import { type Joint, limbOf } from "./skeleton";
 import * as state from "./state";
 
+/** Vertices of the scan while something is dragged. */
+const COARSE = 5000;
 /** Label of the edit that takes the found keypoints over. */
 const FOUND = "As found";
 
@@ -51,6 +53,7 @@ export function forget(): void {
     state.base.value = null;
     state.preview.value = null;
     state.rest.value = null;
+    state.coarse.value = null;
     state.dragged.value = null;
     state.trouble.value = "";
     painting.forget();
@@ -178,6 +181,7 @@ async function answerAll(): Promise<void> {
           joints: answer.joints,
           errorMm: answer.error_mm,
           rate: times.length,
+          workMs: answer.work_ms,
           answerMs: now - asked,
         };
         if (request.sight && answer.moved && state.dragged.value)
@@ -311,7 +315,12 @@ export function cut(crop: Crop): void {
 export async function showRest(): Promise<void> {
   const { crops } = state.edited.value;
   try {
-    state.rest.value = crops.length > 0 ? (await askEditor({ do: "cut", crops })).mesh : null;
+    const rest = crops.length > 0 ? (await askEditor({ do: "cut", crops })).mesh : null;
+    const coarse = (await askEditor({ do: "cut", crops, most_vertices: COARSE })).mesh;
+    batch(() => {
+      state.rest.value = rest;
+      state.coarse.value = coarse;
+    });
   } catch (error) {
     fail(error);
   }

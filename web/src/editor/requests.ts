@@ -34,12 +34,14 @@ interface Exchanges extends PaintExchanges {
       joints: { name: string; body_m: Vec3 }[];
       /** of the joints to their keypoints, mean */
       error_mm: number;
+      /** that the core took */
+      work_ms: number;
       /** body frame */
       body: Mesh;
     };
   };
-  /** The shown scan without what is cut away. */
-  cut: { request: { crops: Crop[] }; answer: { mesh: Mesh } };
+  /** The shown scan without what is cut away, thinned to about so many vertices. */
+  cut: { request: { crops: Crop[]; most_vertices?: number }; answer: { mesh: Mesh } };
   /** Left and right exchanged, or one side's limbs mirrored to the other. */
   sides: {
     request: { keypoints: KeypointSet; locked: string[]; from?: "left" | "right" };

@@ -29,7 +29,8 @@ export interface Preview {
   errorMm: number;
   /** previews in the last second */
   rate: number;
-  /** from the question to the answer */
+  /** that the core took, and from the question to the answer */
+  workMs: number;
   answerMs: number;
 }
 export const preview = signal<Preview | null>(null);
@@ -42,4 +43,6 @@ export const cutter = signal<"box" | "lasso">("lasso");
 export const cutSide = signal<"inside" | "outside">("inside");
 /** The scan without what is cut away; null: nothing is. */
 export const rest = signal<Mesh | null>(null);
+/** The same, or the scan, with few vertices: drawn while something is dragged. */
+export const coarse = signal<Mesh | null>(null);
 export const trouble = signal("");

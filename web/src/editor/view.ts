@@ -20,8 +20,8 @@ import { bodyObject, clear, scanObject } from "../viewer/parts";
 import { JointsObject, type ShownJoint } from "./joints_object";
 import { Pane, type PaneName } from "./panes";
 
-/** Milliseconds after which the panes without the pointer are drawn again during a drag. */
-const OTHERS_MS = 400;
+/** Milliseconds that a dragging pointer rests before the other panes are drawn too. */
+const REST_MS = 150;
 /** Pixels within which a pointer takes a joint: mouse, and fingers. */
 const REACH = { mouse: 14, touch: 28 };
 
@@ -37,9 +37,11 @@ export class EditorView {
   private shown: readonly ShownJoint[] = [];
   private frame = 0;
   private fitted = false;
-  /** While a pointer drags in one pane, the others are drawn more rarely: without a graphics card each costs. */
+  /** Panes that are not drawn as things are. */
+  private readonly outdated = new Set<PaneName>();
+  /** While a pointer drags in one pane, it is drawn first: without a graphics card each costs. */
   private foremost: PaneName | null = null;
-  private allDrawn = 0;
+  private resting: ReturnType<typeof setTimeout> | undefined;
   /** Called after the panes were drawn. */
   onDrawn: () => void = () => {};
   /** Called before a pane is drawn, to show what belongs into it alone. */
@@ -71,8 +73,9 @@ export class EditorView {
       this.bodyRoot,
       this.joints.root,
     );
-    const changed = () => this.request();
-    this.panes = (["front", "side", "free"] as const).map((name) => new Pane(name, elements[name], changed));
+    this.panes = (["front", "side", "free"] as const).map(
+      (name) => new Pane(name, elements[name], () => this.request(name)),
+    );
     this.observer = new ResizeObserver(() => {
       for (const pane of this.panes) pane.resize();
       this.request();
@@ -80,18 +83,16 @@ export class EditorView {
     this.observer.observe(canvas);
   }
 
-  /** @param mesh relative to `origin` in the scan frame */
-  setScan(mesh: MeshData, origin: Vec3): void {
+  /**
+   * @param mesh relative to `origin` in the scan frame
+   * @param coarse the same with few vertices, drawn while a joint is dragged
+   */
+  setScan(mesh: MeshData, coarse: MeshData | null, origin: Vec3): void {
     clear(this.scanRoot);
     this.origin.set(...origin);
-    const object = scanObject(mesh) as Mesh | Points;
-    const material = object.material as MeshLambertMaterial;
-    material.transparent = true;
-    material.opacity = 0.5;
-    // Otherwise each triangle is drawn twice, by programs that are made anew each time.
-    material.forceSinglePass = true;
-    object.renderOrder = 1;
-    this.scanRoot.add(object);
+    this.scanRoot.add(shaded(mesh));
+    if (coarse) this.scanRoot.add(shaded(coarse));
+    this.showScan();
     this.request();
   }
 
@@ -187,19 +188,20 @@ export class EditorView {
 
   /** @param name  the pane that a pointer drags in; null: none */
   setForemost(name: PaneName | null): void {
+    clearTimeout(this.resting);
     this.foremost = name;
+    this.showScan();
     this.request();
   }
 
-  request(): void {
-    if (this.frame !== 0) return;
-    this.frame = requestAnimationFrame(() => {
-      this.frame = 0;
-      this.draw();
-    });
+  /** @param pane  the only one that changed */
+  request(pane?: PaneName): void {
+    for (const { name } of this.panes) if (!pane || name === pane) this.outdated.add(name);
+    this.schedule();
   }
 
   dispose(): void {
+    clearTimeout(this.resting);
     cancelAnimationFrame(this.frame);
     this.frame = -1;
     this.observer.disconnect();
@@ -211,6 +213,22 @@ export class EditorView {
     this.renderer.forceContextLoss();
   }
 
+  private schedule(): void {
+    if (this.frame !== 0) return;
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      this.draw();
+    });
+  }
+
+  /** The whole scan, or while something is dragged the coarse one. */
+  private showScan(): void {
+    const [whole, coarse] = this.scanRoot.children;
+    if (!whole || !coarse) return;
+    whole.visible = this.foremost === null;
+    coarse.visible = this.foremost !== null;
+  }
+
   private draw(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
@@ -220,14 +238,12 @@ export class EditorView {
       this.canvas.height !== Math.floor(height * ratio)
     ) {
       this.renderer.setSize(width, height, false);
-      this.allDrawn = 0;
+      for (const { name } of this.panes) this.outdated.add(name);
     }
     const whole = this.canvas.getBoundingClientRect();
-    const now = performance.now();
-    const all = this.foremost === null || now - this.allDrawn > OTHERS_MS;
-    if (all) this.allDrawn = now;
     for (const pane of this.panes) {
-      if (!all && pane.name !== this.foremost) continue;
+      if (!this.outdated.has(pane.name) || (this.foremost && this.foremost !== pane.name)) continue;
+      this.outdated.delete(pane.name);
       const part = pane.element.getBoundingClientRect();
       const area = [part.left - whole.left, whole.bottom - part.bottom, part.width, part.height] as const;
       if (part.width === 0 || part.height === 0) continue;
@@ -237,5 +253,26 @@ export class EditorView {
       this.renderer.render(this.scene, pane.camera);
     }
     this.onDrawn();
+    clearTimeout(this.resting);
+    if (this.foremost && this.outdated.size > 0) {
+      this.resting = setTimeout(() => {
+        const dragged = this.foremost;
+        this.foremost = null;
+        this.draw();
+        this.foremost = dragged;
+      }, REST_MS);
+    }
   }
+}
+
+/** A scan that lets what is in it be seen. */
+function shaded(mesh: MeshData): Mesh | Points {
+  const object = scanObject(mesh) as Mesh | Points;
+  const material = object.material as MeshLambertMaterial;
+  material.transparent = true;
+  material.opacity = 0.5;
+  // Otherwise each triangle is drawn twice, by programs that are made anew each time.
+  material.forceSinglePass = true;
+  object.renderOrder = 1;
+  return object;
 }

@@ -37,9 +37,11 @@ function paintMesh(core: Core, request: EditorRequest): EditorAnswer {
 
 export function answerEditor(core: Core, request: EditorRequest): EditorAnswer {
   if (request.do === "preview") {
+    const begin = performance.now();
     const { body, faces, ...answer } = core.edit<PreviewReport>(request);
+    const work_ms = performance.now() - begin;
     const mesh = { positions: core.floats(body), indices: core.integers(faces) };
-    return { ...answer, body: mesh } as unknown as EditorAnswer;
+    return { ...answer, work_ms, body: mesh } as unknown as EditorAnswer;
   }
   if (request.do === "cut") {
     const { positions, normals, indices } = core.edit<CutReport>(request);
