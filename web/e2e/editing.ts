@@ -1,5 +1,5 @@
 // What a person does in the editor, with the mouse of a real browser.
-import type { Page } from "playwright-core";
+import type { BrowserContext, Page } from "playwright-core";
 import { downloaded, PATIENCE_MS } from "./harness";
 
 type Point = readonly [number, number];
@@ -12,6 +12,20 @@ export async function drag(page: Page, path: readonly Point[], steps = 3): Promi
   await page.mouse.down();
   for (const point of path.slice(1)) await page.mouse.move(...point, { steps });
   await page.mouse.up();
+}
+
+/** One finger, as a touch screen reports it. */
+export async function touch(context: BrowserContext, page: Page, from: Point, to: Point): Promise<void> {
+  const screen = await context.newCDPSession(page);
+  const send = (type: "touchStart" | "touchMove" | "touchEnd", points: Point[]) =>
+    screen.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y]) => ({ x, y })) });
+  await send("touchStart", [from]);
+  for (const share of [0.3, 0.6, 1])
+    await send("touchMove", [
+      [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])] as const,
+    ]);
+  await send("touchEnd", []);
+  await screen.detach();
 }
 
 export async function editJoints(page: Page): Promise<void> {

@@ -5,7 +5,16 @@ import { join } from "node:path";
 import type { Page } from "playwright-core";
 import { describe, expect } from "vitest";
 import type { Registration } from "../src/core/types";
-import { choose, drag, editJoints, exportedJoints, FlatView, type Places, transformed } from "./editing";
+import {
+  choose,
+  drag,
+  editJoints,
+  exportedJoints,
+  FlatView,
+  type Places,
+  touch,
+  transformed,
+} from "./editing";
 import { downloaded, PATIENCE_MS, pick, root, test, verdict } from "./harness";
 import { noisy, scanOfModel, twoPeople } from "./scans";
 
@@ -74,6 +83,14 @@ function apart(a: Registration, b: Registration): number {
     Math.hypot(...b.joints[i]!.scan.map((value, k) => value - scan[k]!)),
   );
   return Math.max(...distances) * 1000 * a.scan.metres_per_unit;
+}
+
+function distance(a: Places[string], b: Places[string]): number {
+  return Math.hypot(...a.map((value, k) => value - b[k]!));
+}
+
+function json(name: string, buffer: Buffer) {
+  return { name, buffer, mimeType: "application/json" };
 }
 
 const withoutTimes = (text: string) => text.replace(/"timing_ms":\s*\{[^}]*\}/, "");
@@ -161,5 +178,87 @@ describe("the editor", () => {
     expect(first!.registration.verdict.status).toBe("ok");
     expect(apart(first!.registration, repaired)).toBeLessThan(0.5);
     expect(withoutTimes(second!.text)).toBe(withoutTimes(first!.text));
+  });
+
+  test("moves, mirrors, swaps, locks and resets joints, by keys, mouse and touch, and brings edits back from files", async ({
+    page,
+    context,
+  }) => {
+    // In metres, along Y; few vertices, so that three views are drawn quickly without a graphics card.
+    const folder = mkdtempSync(join(tmpdir(), "vitruvian-editor-"));
+    const { scan } = scanOfModel(root, join(folder, "made"), new Array(72).fill(0), 1, 6000);
+    await open(page, folder, "standing.ply", scan);
+    await page.keyboard.press("3");
+    await editJoints(page);
+    await page.getByLabel("Snap to the middle of the body").uncheck();
+    const click = (name: string) => page.getByRole("button", { name, exact: true }).click();
+    const edits = (count: number) => page.getByText(`${count} edit${count > 1 ? "s" : ""}`, { exact: true });
+    const found = await exportedJoints(page);
+
+    await choose(page, "right_wrist", "front");
+    await page.locator("[data-pane=front]").focus();
+    await page.keyboard.press("ArrowUp");
+    await edits(2).waitFor();
+    await page.keyboard.press("Shift+ArrowUp");
+    await edits(3).waitFor();
+    const nudged = await exportedJoints(page);
+    expect(distance(nudged.right_wrist!, found.right_wrist!)).toBeCloseTo(0.011, 6);
+    expect(nudged.right_wrist![1] - found.right_wrist![1]).toBeGreaterThan(0.0105);
+    await page.keyboard.press("Control+z");
+    await page.keyboard.press("Control+z");
+    expect(await exportedJoints(page)).toEqual(found);
+
+    const wrist = await choose(page, "left_wrist", "front");
+    const aside: [number, number] = [wrist[0] - 30, wrist[1] - 40];
+    await click("Lock");
+    await drag(page, [wrist, aside]);
+    expect(await exportedJoints(page)).toEqual(found);
+    await click("Undo");
+    await page.getByRole("button", { name: "Lock", exact: true }).waitFor();
+    await touch(context, page, wrist, aside);
+    await edits(2).waitFor();
+    const touched = await exportedJoints(page);
+    expect(distance(touched.left_wrist!, found.left_wrist!)).toBeGreaterThan(0.1);
+
+    await page.getByLabel("Move the whole limb").check();
+    const elbow = await choose(page, "right_elbow", "side");
+    await drag(page, [elbow, [elbow[0] - 25, elbow[1] - 10]]);
+    await edits(3).waitFor();
+    const together = await exportedJoints(page);
+    const shift = together.right_elbow!.map((value, k) => value - found.right_elbow![k]!);
+    expect(Math.hypot(...shift)).toBeGreaterThan(0.05);
+    together.right_wrist!.forEach((value, k) => {
+      expect(value - found.right_wrist![k]!).toBeCloseTo(shift[k]!, 9);
+    });
+
+    await click("Reset joint");
+    const reset = await exportedJoints(page);
+    expect(reset.right_elbow).toEqual(found.right_elbow);
+    expect(reset.right_wrist).toEqual(together.right_wrist);
+    await click("Left limbs → right");
+    await edits(5).waitFor();
+    const mirrored = await exportedJoints(page);
+    expect(distance(mirrored.right_wrist!, mirrored.right_elbow!)).toBeCloseTo(
+      distance(touched.left_wrist!, touched.left_elbow!),
+      9,
+    );
+    await click("Swap left and right");
+    await edits(6).waitFor();
+    const swapped = await exportedJoints(page);
+    expect(swapped.left_wrist).toEqual(mirrored.right_wrist);
+    expect(swapped.right_hip).toEqual(mirrored.left_hip);
+
+    const keypoints = await downloaded(page, "Export keypoints");
+    const project = await downloaded(page, "Save project");
+    await click("Reset all");
+    expect(await exportedJoints(page)).toEqual(found);
+    await page.getByLabel("Import keypoints…").setInputFiles(json("swapped.keypoints.json", keypoints));
+    await edits(8).waitFor();
+    expect(await exportedJoints(page)).toEqual(swapped);
+    await page.getByLabel("Open project…").setInputFiles(json("swapped.project.json", project));
+    await page.locator(".editor").waitFor({ state: "detached" });
+    await page.getByText("6 edits by hand").waitFor();
+    await editJoints(page);
+    expect(await exportedJoints(page)).toEqual(swapped);
   });
 });
