@@ -68,10 +68,8 @@ void leave_out_unseen(std::span<const std::uint8_t> unseen, std::span<const std:
                       const SurfaceMeasurement& measurement, VerdictFeatures& features);
 
 /// Judges a registration. `failed`: the body lies wrong beyond what clothes explain; `doubtful`: someone
-/// should look; `ok` otherwise. Reasons name the body parts; for `ok` they only tell what was guessed or not
-/// seen. Thresholds were measured on fits with known joints (models/README.md): right fits of clothed
-/// strangers reach 54 mm (model to scan) and 132 mm (scan to model) at the 95th percentile, wrong ones begin
-/// at 14 and 18 mm.
+/// should look, for calibrated_confidence() is low or the stature odd; `ok` otherwise. Reasons name the body
+/// parts; for `ok` they only tell what was guessed or not seen.
 Verdict judge(const VerdictFeatures& features);
 
 /// Verdict of a registration that never reached a fit.

@@ -8,6 +8,7 @@
 #include "align/frame.h"
 #include "detail/vertex_offsets.h"
 #include "keypoints/left_right.h"
+#include "measure/inside.h"
 #include "measure/surface_error_compute.h"
 #include "measure/verdict_features.h"
 #include "pipeline/body_parameters.h"
@@ -170,6 +171,9 @@ Registration make_outcome(const OutcomeInput& input, const Execution& execution)
   features.refits = input.fit.refits;
   features.joint_limit_excess_rad = limit_excess(body, input.models.prior, state);
   features.keypoint_disagreement_m = keypoint_disagreement(input.targets, body, skeleton, features);
+  const Points3f vertices_float = vertices.cast<float>();
+  features.inside_share =
+      inside_share(vertices_float, vertex_normals(vertices_float, body.faces), body.faces);
   features.stature_m = standing_stature(body, state.betas);
   if (!input.unit_note.empty()) features.notes.push_back(input.unit_note);
 
