@@ -1,7 +1,7 @@
-import { beforeEach, describe, expect, it } from "vitest";
+import { beforeEach, describe, expect, it, test } from "vitest";
 import { isScanName, scansAmong } from "../src/batch/files";
 import * as queue from "../src/batch/queue";
-import { batchCsv } from "../src/batch/table";
+import { batchCsv, measurementsCsv } from "../src/batch/table";
 import { CoreError, defaultSettings } from "../src/core/types";
 
 const file = (name: string, text = "x") => new File([text], name);
@@ -86,4 +86,17 @@ describe("a folder", () => {
     );
     expect(scansAmong(picked).map(({ name }) => name)).toEqual(["Ærø.glb", "scan2.PLY.gz", "scan10.ply"]);
   });
+});
+
+test("measurements of all scans make one table, a row each", () => {
+  const one = "id,name,value\nwaist,Waist girth,812.5\n";
+  const two = 'id,name,value\nwaist,"Waist, natural",700\nhip,Hips,950\n';
+  expect(
+    measurementsCsv([
+      ["a", one],
+      ["b, c", two],
+    ]),
+  ).toBe(
+    'scan,id,name,value\na,waist,Waist girth,812.5\n"b, c",waist,"Waist, natural",700\n"b, c",hip,Hips,950\n',
+  );
 });

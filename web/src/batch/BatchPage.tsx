@@ -82,7 +82,7 @@ function Tools() {
       <button
         type="button"
         disabled={!done || packing.value}
-        title="A folder for each scan, as the command line writes it, and the table"
+        title="A folder for each scan, with its measurements, as the command line writes it; and the tables"
         onClick={async () => {
           packing.value = true;
           const zip = await archive(queue.items.value);

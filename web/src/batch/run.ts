@@ -84,6 +84,9 @@ async function register(client: CoreClient, item: queue.Item): Promise<void> {
 
 async function finish(id: number, client: CoreClient, result: ResultData, seconds: number): Promise<void> {
   const files = await client.call("files", { format: "ply" });
+  // Of a failed registration there is no body to measure.
+  if (result.registration.verdict.status !== "failed")
+    files.push(...(await client.call("measuredFiles", { format: "measurements" })));
   if (result.vertexErrorMm.length > 0) {
     await show(id, (draw) => draw.body(result.body, result.vertexErrorMm));
   }

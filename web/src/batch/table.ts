@@ -32,3 +32,13 @@ function row(item: Item): string[] {
 export function batchCsv(items: readonly Item[]): string {
   return [COLUMNS, ...items.map(row)].map((each) => `${each.map(field).join(",")}\n`).join("");
 }
+
+/** One row a measurement: the tables of single scans below each other, the scan's folder in front. */
+export function measurementsCsv(tables: readonly (readonly [folder: string, csv: string])[]): string {
+  const rows = tables.flatMap(([folder, csv], i) => {
+    const [header, ...lines] = csv.trimEnd().split("\n");
+    const named = lines.map((line) => `${field(folder)},${line}`);
+    return i === 0 ? [`scan,${header}`, ...named] : named;
+  });
+  return rows.map((row) => `${row}\n`).join("");
+}
