@@ -322,9 +322,8 @@ std::vector<Dimension> measure_dimensions(const Figure& standing, const Figure& 
       dimension.definition = spec.definition;
       dimension.side = side;
       dimension.fit_error_m = mean_fit_error(finding->touched, errors);
-      dimension.uncertainty_m =
-          estimated_uncertainty(finding->kind, finding->tape && finding->tape->closed, dimension.fit_error_m);
       dimension.course_kind = finding->kind;
+      set_uncertainty(dimension, spec.id, finding->tape && finding->tape->closed);
       const bool on_landmarks = !finding->line.empty();
       for (const Posture posture : {Posture::standing, Posture::scanned}) {
         const Figure& figure = posture == Posture::standing ? standing : scanned;

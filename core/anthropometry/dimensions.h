@@ -29,6 +29,8 @@ struct Dimension {
   Posture posture = Posture::standing;
   double value_m = 0;
   std::optional<double> uncertainty_m;  ///< standard uncertainty; none where the fit's error is unknown
+  /// Whether it comes from errors measured on strangers' scans (dimension_errors.h), not from a formula.
+  bool uncertainty_is_measured = false;
   /// Mean distance between body and scan over the segments that it touches; none where none was observed.
   std::optional<double> fit_error_m;
   CourseKind course_kind = CourseKind::line;

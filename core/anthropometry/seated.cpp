@@ -100,8 +100,8 @@ class Sitter {
     dimension.posture = Posture::sitting;
     dimension.value_m = value;
     dimension.fit_error_m = mean_fit_error(segments, errors_);
-    dimension.uncertainty_m = estimated_uncertainty(kind, false, dimension.fit_error_m);
     dimension.course_kind = kind;
+    set_uncertainty(dimension, id, false);
     dimension.course = std::move(course);
     found_.push_back(std::move(dimension));
   }

@@ -1,7 +1,10 @@
 #include "anthropometry/uncertainty.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "anthropometry/dimension_errors.h"
 
 namespace vitruvian {
 namespace {
@@ -25,10 +28,28 @@ std::optional<double> mean_fit_error(SegmentSet segments, const FitErrors& error
   return sum / count;
 }
 
+std::optional<double> known_uncertainty(std::string_view id, std::optional<double> fit_error_m) {
+  if (!fit_error_m) return std::nullopt;
+  for (const DimensionError& known : dimension_errors()) {
+    if (known.id != id) continue;
+    const double worse = known.fit_mm > 0 ? 1e3 * *fit_error_m / known.fit_mm : 1;
+    return 1e-3 * known.rms_mm * std::max(1.0, worse);
+  }
+  return std::nullopt;
+}
+
 std::optional<double> estimated_uncertainty(CourseKind kind, bool closed, std::optional<double> fit_error_m) {
   if (!fit_error_m) return std::nullopt;
   if (kind != CourseKind::tape) return std::numbers::sqrt2 * std::hypot(*fit_error_m, kLandmarkSlide);
   return std::hypot((closed ? std::numbers::pi : std::numbers::sqrt2) * *fit_error_m, kLandmarkSlide);
+}
+
+void set_uncertainty(Dimension& dimension, std::string_view id, bool closed) {
+  dimension.uncertainty_m = known_uncertainty(id, dimension.fit_error_m);
+  dimension.uncertainty_is_measured = dimension.uncertainty_m.has_value();
+  if (!dimension.uncertainty_m) {
+    dimension.uncertainty_m = estimated_uncertainty(dimension.course_kind, closed, dimension.fit_error_m);
+  }
 }
 
 }  // namespace vitruvian

@@ -65,6 +65,9 @@ ordered_json dimension_json(const Dimension& dimension) {
   row["value_mm"] = millimetres(dimension.value_m);
   row["uncertainty_mm"] =
       dimension.uncertainty_m ? ordered_json(millimetres(*dimension.uncertainty_m)) : ordered_json();
+  row["uncertainty_source"] = !dimension.uncertainty_m            ? ordered_json()
+                              : dimension.uncertainty_is_measured ? ordered_json("measured")
+                                                                  : ordered_json("estimated");
   row["fit_error_mm"] =
       dimension.fit_error_m ? ordered_json(millimetres(*dimension.fit_error_m)) : ordered_json();
   row["posture"] = dimension.posture == Posture::scanned ? "scanned" : "standard";

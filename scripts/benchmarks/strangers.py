@@ -16,15 +16,17 @@ from .own_body import BodyFiles
 sys.path[:0] = [str(ROOT / "scripts/models")]
 
 import array_file  # noqa: E402  (found through the path above)
-from body import scanner  # noqa: E402
+from body import correctives, posing, scanner, shape_space, surface  # noqa: E402
 from body.characters import draw  # noqa: E402
 from body.modifiers import PREFIX, SUFFIX, Modifiers  # noqa: E402
 from body.package import Package  # noqa: E402
 from body.rigged import RiggedCharacter  # noqa: E402
+from body.skeleton import JOINTS, joint_heads  # noqa: E402
 from body.skin_weights import smoothed  # noqa: E402
 from body.subdivide import split_long_edges  # noqa: E402
 from body.surface import vertex_normals  # noqa: E402
 from body.template import make_template  # noqa: E402
+from body.unpose import t_pose_centres, to_t_pose, turns_to_t_pose  # noqa: E402
 from make_sample_scan import OWN_FEATURES, colours  # noqa: E402
 
 SEED = 31
@@ -88,6 +90,22 @@ def pose_of(character, base, random, hands):
             pose[bone + suffix] = np.radians(np.array(degrees) * mirror + SPREAD_DEGREES * random.normal(size=3))
     curl = {"fused fingers": 0.5, "blobs": 3.0}.get(hands, 1.0) * random.uniform(0.6, 1.2)
     return pose | character.finger_curls({k: tuple(curl * a for a in (12, 18, 13)) for k in "12345"})
+
+
+def rest_surface(k, body, template_skin):
+    """Where the template's vertices (V,3) of the k-th stranger are in the model's T-pose: turned there from the package's
+    A-pose as the characters that the model was made from, by the stranger's own joints, fingers as the package has them.
+    Metres, pelvis at the origin. template_skin: see template_skin(). The scans' poses and hands do not enter."""
+    character, size = person(k)
+    place = np.full(len(package().skin), -1)
+    place[character.kept] = np.arange(len(character.kept))
+    skin = character.finer(character.skin)[0][place[template_skin]]
+    heads = {joint: character.ends[[character.names.index(b) for b in bones], 0].mean(0)[None]
+             for joint, bones in joint_heads().items()}
+    centres = np.stack([heads[joint] for joint in JOINTS], 1)
+    turns = turns_to_t_pose(heads)
+    at_rest = to_t_pose(skin[None], body.weights, centres, turns, t_pose_centres(centres, turns))[0].astype(float)
+    return size * (at_rest - body.regressor[0] @ at_rest)
 
 
 def hand_share(character):

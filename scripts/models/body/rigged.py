@@ -1,4 +1,6 @@
 """A character of the package on its own 163-bone rig: what scans of people outside the model's span are made from."""
+import functools
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -48,12 +50,16 @@ class RiggedCharacter:
         weights = np.array([list(amounts.values())], np.float32)
         self.skin = shapes.skin(weights).reshape(3, -1).T.astype(float)
         self.ends = shapes.joints(weights)[0].reshape(-1, 2, 3)
-        begin, end, owner = bone_segments(self.names, self.ends, self.skin)
-        heat = bone_heat(self.skin, self.faces, begin, end, owner, len(self.names))
-        self.weights = limited(smoothed(heat, self.faces, np.full(len(self.skin), 0.4), 4), INFLUENCES)
         place = np.full(len(package.skin), -1)
         place[self.kept] = np.arange(len(self.kept))
         self.polygons = [place[corners] for corners in opened_and_capped(package.skin, package.quads)]
+
+    @functools.cached_property
+    def weights(self):
+        """[V,bones]; costly, made when they are first needed."""
+        begin, end, owner = bone_segments(self.names, self.ends, self.skin)
+        heat = bone_heat(self.skin, self.faces, begin, end, owner, len(self.names))
+        return limited(smoothed(heat, self.faces, np.full(len(self.skin), 0.4), 4), INFLUENCES)
 
     def posed(self, pose):
         """(skin [V,3], heads of the bones [B,3]). pose: {bone: rotation vector in radians, relative to the parent}."""

@@ -164,7 +164,7 @@ TEST(Dimensions, AsScannedEqualsStandardWhenScannedInTheStandardPosture) {
 TEST(Dimensions, UncertaintyGrowsWithTheFitsError) {
   FitErrors good, bad;
   good.fill(0.001);
-  bad.fill(0.006);
+  bad.fill(0.030);
   const BodyState rest = BodyState::rest(testing::made_body());
   const auto a = dimensions_of(rest, Posture::standing, good),
              b = dimensions_of(rest, Posture::standing, bad);
