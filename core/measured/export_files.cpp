@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
-#include "exports/html_report.h"
 #include "exports/motion_files.h"
 #include "exports/skinned_glb.h"
 #include "io/mesh_writer.h"
+#include "measured/report.h"
 
 namespace vitruvian {
 namespace {
@@ -18,12 +17,6 @@ namespace {
 constexpr double kWorstColour = 20;
 constexpr std::array<std::string_view, 8> kFormats = {"html", "glb",       "npz", "smpl",
                                                       "trc",  "landmarks", "ply", "obj"};
-
-std::string fixed(double value, int decimals) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
-  return buffer;
-}
 
 /// Clearly different neighbours: hues a golden angle apart.
 std::array<std::uint8_t, 3> segment_colour(int segment) {
@@ -86,49 +79,13 @@ std::vector<ExportedFile> coloured_meshes(const MeasuredRegistration& m, bool pl
   return files;
 }
 
-std::string html_report(const MeasuredRegistration& m) {
-  const BodyModel& body = m.body();
-  ReportContent content{"Measurements of " + m.registration().scan.file,
-                        "Verdict: " + to_string(m.registration().verdict.status) + ", confidence " +
-                            fixed(m.registration().verdict.confidence, 2),
-                        m.registration().verdict.reasons,
-                        {},
-                        {},
-                        m.standing().vertices,
-                        body.faces,
-                        {}};
-  content.facts.push_back("body volume " + fixed(1e3 * m.report().body.volume_m3, 2) + " l, surface " +
-                          fixed(m.report().body.area_m2, 3) + " m², mass with published segment densities " +
-                          fixed(m.report().body.mass_kg, 1) + " kg");
-  content.facts.push_back(
-      "drawn and measured standing: upright, ankles 200 mm apart, arms 20 degrees from the vertical");
-  for (const Dimension& d : m.report().dimensions) {
-    if (d.posture == Posture::scanned) continue;
-    content.dimensions.push_back({d.name + (d.side.empty() ? "" : ", " + d.side), fixed(1e3 * d.value_m, 1),
-                                  d.uncertainty_m ? fixed(1e3 * *d.uncertainty_m, 1) : "", d.standard,
-                                  d.definition});
-    if (d.posture == Posture::sitting) continue;
-    if (d.course_kind == CourseKind::tape || d.course_kind == CourseKind::line)
-      content.curves.push_back({d.name, d.course});
-  }
-  for (int s = 0; s < kSegmentCount; ++s) {
-    const SegmentMeasure& segment = m.report().body.segments[static_cast<std::size_t>(s)];
-    content.segments.push_back({std::string(kSegmentNames[static_cast<std::size_t>(s)]),
-                                fixed(1e6 * segment.volume_m3, 0) + " cm³", "", "",
-                                "length " + fixed(1e3 * segment.length_m, 0) + " mm, surface " +
-                                    fixed(1e4 * segment.area_m2, 0) + " cm², mass " +
-                                    fixed(segment.mass_kg, 3) + " kg"});
-  }
-  return to_html_report(content);
-}
-
 }  // namespace
 
 std::span<const std::string_view> export_formats() { return kFormats; }
 
 std::vector<ExportedFile> export_files(std::string_view format, const MeasuredRegistration& m) {
   if (format == "ply" || format == "obj") return coloured_meshes(m, format == "ply");
-  if (format == "html") return {{"report.html", html_report(m)}};
+  if (format == "html") return {{"report.html", measured_report(m)}};
   const ExportedBody body = exported_body(m);
   if (format == "glb") return {{"body.glb", to_skinned_glb(body)}};
   if (format == "npz") return {{"amass.npz", to_amass_npz(body)}};

@@ -197,17 +197,42 @@ TEST(HtmlReport, EscapesAndStandsAlone) {
   const ReportContent content{"<b>&\"scan\"",
                               "ok",
                               {"a < b"},
-                              {{"girth", "1.0", "0.1", "ISO", "round"}},
-                              {},
-                              vertices,
+                              {{"figure <", vertices, {{"tape", {Vec3d::Zero(), Vec3d::UnitY()}}}}},
                               sample.model.faces,
-                              {{"tape", {Vec3d::Zero(), Vec3d::UnitY()}}}};
+                              {{"Lengths & girths", "", {{"girth", "1.0", "0.1", "ISO", "round"}}}},
+                              {{"arm <", "mm", "mm", {0, 1}, {{"girth", {1, 2}}}}},
+                              {"not <i>"}};
   const std::string html = to_html_report(content);
   EXPECT_EQ(html.find("<b>&\""), std::string::npos);
   EXPECT_NE(html.find("&lt;b&gt;&amp;&quot;scan"), std::string::npos);
   EXPECT_NE(html.find("class=\"tape\""), std::string::npos);
   for (const char* foreign : {"http", "src=", "<script", "@import", "url("})
     EXPECT_EQ(html.find(foreign), std::string::npos);
+  for (const char* raw : {"figure <", "Lengths & ", "arm <", "not <i>"})
+    EXPECT_EQ(html.find(raw), std::string::npos) << raw;
+  EXPECT_NE(html.find("<td>round</tr>"), std::string::npos) << "every row has its definition";
+}
+
+TEST(Plot, DrawsEachLineWithinItsFrameAndBreaksItWhereNothingIsKnown) {
+  const double unknown = std::nan("");
+  const Plot plot{"arm",
+                  "mm",
+                  "mm",
+                  {0, 10, 20, 30, 40},
+                  {{"girth", {200, 210, unknown, 250, 240}}, {"depth", {70, 71, 72, 73, 74}}}};
+  const std::string svg = to_svg(plot);
+  for (const char* text : {"nan", "inf"}) EXPECT_EQ(svg.find(text), std::string::npos);
+  // The broken line is two pieces, the whole one one; each has a piece more in the legend.
+  const std::string broken = svg.substr(svg.find("</g>"), svg.find("stroke=\"#c2185b\"") - svg.find("</g>"));
+  const std::string d = broken.substr(broken.rfind("d=\"") + 3);
+  EXPECT_EQ(std::count(d.begin(), d.end(), 'M'), 2) << d;
+  double x = 0, y = 0;
+  for (std::size_t at = 0; (at = d.find_first_of("ML", at)) != std::string::npos; ++at) {
+    ASSERT_EQ(std::sscanf(d.c_str() + at + 1, "%lf %lf", &x, &y), 2);
+    EXPECT_TRUE(x >= 0 && x <= 360 && y >= 0 && y <= 220) << d;
+  }
+  EXPECT_EQ(to_svg({"none", "", "", {0, 1}, {{"girth", {unknown, unknown}}}}), "");
+  EXPECT_FALSE(to_svg({"flat", "", "", {5}, {{"girth", {3}}}}).empty());
 }
 
 }  // namespace
