@@ -23,8 +23,14 @@ void ModelShelf::load(ModelPart part, const Buffer& file, const std::string& nam
 }
 
 ModelFileKind ModelShelf::add(Buffer file, std::string name) {
+  // What was added with a file that cannot be used is not used by itself.
+  auto others = std::exchange(added_, {});
   const ModelFileKind kind = kind_of_model_file({file.bytes(), name});
-  added_[static_cast<std::size_t>(kind)] = Added{std::move(file), std::move(name)};
+  std::optional<Added>& place = others[static_cast<std::size_t>(kind)];
+  if (place)
+    throw Error(ErrorCode::usage, place->name + " and " + name + " are for the same: open one of them");
+  place = Added{std::move(file), std::move(name)};
+  added_ = std::move(others);
   return kind;
 }
 
@@ -47,8 +53,11 @@ void ModelShelf::begin(const std::string& known, const Execution& execution) {
   }
   auto assembly = std::make_unique<OwnModels>(bundled_, own, execution);
   const nlohmann::json kept = nlohmann::json::parse(known, nullptr, false);
-  if (kept.is_object() && kept.value("sha256", "") == assembly->body().sha256)
-    assembly->set_learnt(landmarks_from_json(kept.value("text", ""), "the landmarks that were kept"));
+  if (kept.is_object()) {
+    const auto text = kept.find(assembly->body().sha256);
+    if (text != kept.end() && text->is_string())
+      assembly->set_learnt(landmarks_from_json(text->get<std::string>(), "the landmarks that were kept"));
+  }
   assembly_ = std::move(assembly);
 }
 

@@ -23,17 +23,17 @@ class ModelShelf {
   /// What a registration uses.
   const Models& models() const { return own_ ? *own_ : bundled_; }
 
-  /// Takes a user's file for begin(), in place of one of its kind. @throws as kind_of_model_file().
+  /// Takes a user's file for begin(). @throws Error(usage) for the second of a kind, and as
+  /// kind_of_model_file(); those that were added before are then let go.
   ModelFileKind add(Buffer file, std::string name);
   /// Reads the files that were added, and lets them go; with none, the bundled models are in use again.
-  /// @param known  `landmarks` of an earlier report(), used when they are of the same body; empty: none.
+  /// @param known  JSON object of what earlier reports had in `landmarks`, texts by sha256: used for the same
+  ///               body.
   /// @throws as OwnModels; the models in use stay as they were.
   void begin(const std::string& known, const Execution& execution);
   /// The next pictures to look at, or none: the models are then in use.
   std::optional<NetworkRequest> next_request();
   void accept(const NetworkReply& reply);
-  /// Between begin() and the end of the requests.
-  bool under_way() const { return assembly_ != nullptr; }
   /// Gives up what is under way.
   void abandon() { assembly_.reset(); }
 

@@ -40,28 +40,21 @@ Session::~Session() { task_.stop(); }
 
 void Session::use_models(const std::string& known_landmarks) {
   task_.require_idle();
-  pipeline_.reset();
-  drop_result();
-  editor_.reset();
-  painter_.reset();
   request_.reset();
+  changing_models_ = false;
   task_.start([this, known_landmarks] {
     task_.execution().progress("model", -1);
     models_.begin(known_landmarks, task_.execution());
+    changing_models_ = true;
     advance();
   });
 }
 
 void Session::open(Buffer file, std::string name) {
   task_.require_idle();
-  pipeline_.reset();
-  drop_result();
-  lesson_.reset();
-  unchanged_.reset();
+  drop_findings();
   scan_.reset();
   shown_ = {};
-  editor_.reset();
-  painter_.reset();
   // std::function wants what it holds to be copyable.
   auto held = std::make_shared<Buffer>(std::move(file));
   task_.start([this, held, name = std::move(name)] {
@@ -107,6 +100,7 @@ void Session::begin(int until, bool again) {
   if (until < 0 || until >= kPipelineStageCount) throw Error(ErrorCode::internal, "unknown stage");
   until_ = kStages[until];
   models_.abandon();
+  changing_models_ = false;
   if (!pipeline_) {
     pipeline_ = std::make_unique<RegistrationPipeline>(models_.models(), settings_, task_.execution());
     pipeline_->on_energy([this](std::string_view curve, int iteration, double energy) {
@@ -131,7 +125,7 @@ void Session::begin(int until, bool again) {
 void Session::resume() {
   if (!request_) throw Error(ErrorCode::internal, "no network request is open");
   task_.start([this] {
-    if (models_.under_way()) {
+    if (changing_models_) {
       models_.accept(reply_);
     } else {
       pipeline_->accept(reply_);
@@ -141,14 +135,17 @@ void Session::resume() {
 }
 
 void Session::advance() {
-  const bool at_models = models_.under_way() || !pipeline_;
-  request_ = at_models ? models_.next_request() : pipeline_->next_request(until_);
+  request_ = changing_models_ ? models_.next_request() : pipeline_->next_request(until_);
   reply_ = {};
   if (request_) {
     reply_.outputs.resize(request_->inputs.size());
     return;
   }
-  if (at_models || until_ != PipelineStage::fit || registration_) return;
+  if (std::exchange(changing_models_, false)) {
+    drop_findings();
+    return;
+  }
+  if (until_ != PipelineStage::fit || registration_) return;
   registration_ = pipeline_->finish();
   keep_result();
 }
@@ -158,6 +155,15 @@ void Session::keep_result() {
   body_vertices_ = ((body_from_scan.topLeftCorner<3, 3>() * registration_->registered_vertices).colwise() +
                     body_from_scan.topRightCorner<3, 1>())
                        .cast<float>();
+}
+
+void Session::drop_findings() {
+  pipeline_.reset();
+  drop_result();
+  lesson_.reset();
+  unchanged_.reset();
+  editor_.reset();
+  painter_.reset();
 }
 
 void Session::drop_result() {

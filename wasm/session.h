@@ -31,7 +31,8 @@ class Session {
 
   ModelShelf& models() { return models_; }
   /// Starts to put the user's model files to use that were added to models(); asks for networks as begin()
-  /// does. All that was found with other models is dropped.
+  /// does. All that was found with other models is dropped as soon as these are in use; when that fails, all
+  /// stays. @param known_landmarks  see ModelShelf::begin().
   void use_models(const std::string& known_landmarks);
 
   /// Starts to read a scan; replaces the one before and all that was found in it.
@@ -82,6 +83,7 @@ class Session {
   bool holds(PipelineStage stage) const;
   void advance();
   void keep_result();
+  void drop_findings();
   void drop_result();
   nlohmann::json paint(const nlohmann::json& request);
   const MeasuredRegistration& measured();
@@ -91,6 +93,7 @@ class Session {
 
   Task task_;
   ModelShelf models_;
+  bool changing_models_ = false;  ///< what networks are asked for is the models'
   std::shared_ptr<const Scan> scan_;
   double read_ms_ = 0;
   DecimatedMesh shown_;  ///< for the view, relative to the scan's origin

@@ -310,7 +310,8 @@ void add_dmpl(BodyModel& model, std::span<const std::byte> bytes, const std::str
               int components) {
   if (model.family != "smpl" && model.family != "smplh") {
     throw Error(ErrorCode::usage, file_name + ": soft tissue (--dmpl) goes with SMPL or SMPL+H, not with " +
-                                      model.name + " (" + model.family + ")");
+                                      model.name + " (" + model.family +
+                                      "): give the body model it belongs to before it or together with it");
   }
   const ModelArrays arrays(bytes, file_name);
   const NumericArray dirs = arrays.array("eigvec");

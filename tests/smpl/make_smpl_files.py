@@ -2,8 +2,8 @@
 
 usage: make_smpl_files.py OUT [own]   (the default body from models/generated, or $VITRUVIAN_MODELS)
 
-OUT/own_*: the default body itself at its own size; with "own", only OUT/own_smpl.npz is made. The others have the official files' sizes. NAME.expected.npz holds a
-pose, coefficients (betas, then expression or soft tissue) and the posed vertices.
+OUT/own_*: the default body itself at its own size, with "own" nothing else, but of every kind. The others have the official
+files' sizes. NAME.expected.npz holds a pose, coefficients (betas, then expression or soft tissue) and the posed vertices.
 """
 import glob
 import hashlib
@@ -42,11 +42,25 @@ def expect(out, name, model, family, used, seed):
              vertices=arrays.forward(model, family, pose, full))
 
 
+def write_own(out):
+    """A file of every kind, all from the default body at its own size."""
+    own = arrays.to_dense(made_body())
+    files.write_npz(os.path.join(out, "own_smpl.npz"), own, "smpl", compressed=True)
+    write(os.path.join(out, "own_smpl.pkl"), files.official_pickle(own, "smpl"))
+    files.write_npz(os.path.join(out, "own_smplh.npz"), arrays.with_fingers(own, "smplh"), "smplh", compressed=True)
+    files.write_npz(os.path.join(out, "own_star.npz"), arrays.as_star(own), "star", compressed=True)
+    files.write_npz(os.path.join(out, "own_smplx.npz"), arrays.with_fingers(own, "smplx"), "smplx", compressed=True)
+    random = np.random.default_rng(8)
+    np.savez(os.path.join(out, "own_dmpl.npz"), eigvec=0.02 * random.normal(size=own["v_template"].shape + (8,)))
+    state = {k: files.Tensor(v) for k, v in files.vposer_state(random).items()}
+    files.torch_zip(os.path.join(out, "own_vposer.ckpt"), {"state_dict": state})
+
+
 def main():
     out = sys.argv[1]
     os.makedirs(out, exist_ok=True)
     if sys.argv[2:] == ["own"]:
-        files.write_npz(os.path.join(out, "own_smpl.npz"), arrays.to_dense(made_body()), "smpl", compressed=True)
+        write_own(out)
         return
     done, made_from = os.path.join(out, "done"), made_of()
     if os.path.exists(done) and open(done, "rb").read() == made_from:

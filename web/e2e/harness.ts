@@ -151,6 +151,21 @@ export async function drop(page: Page, name: string, content: Buffer): Promise<v
   }
 }
 
+/** Drops files of this computer on the page, all at once. */
+export async function dropFiles(page: Page, paths: string[]): Promise<void> {
+  const picker = await page.evaluateHandle(() =>
+    Object.assign(document.createElement("input"), { type: "file", multiple: true }),
+  );
+  await picker.asElement()!.setInputFiles(paths);
+  await picker.evaluate((input) => {
+    const dataTransfer = new DataTransfer();
+    for (const file of input.files ?? []) dataTransfer.items.add(file);
+    for (const type of ["dragenter", "dragover", "drop"]) {
+      document.querySelector("main")!.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true }));
+    }
+  });
+}
+
 /** An OBJ of a box, `height` units high, standing along Y. */
 export function boxObj(height: number): Buffer {
   const lines: string[] = [];

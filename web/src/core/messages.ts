@@ -1,6 +1,6 @@
 // Typed messages between the page and the worker that holds the core.
 import type { EditorAnswer, EditorRequest } from "../editor/requests";
-import type { ModelsInfo } from "../models/types";
+import type { ModelFile, ModelKind, ModelsInfo } from "../models/types";
 import type { Measurements, Section } from "./measurements";
 import type { BodyDescription, BodyParameters, LessonData, LessonSettings, PosedBody } from "./teaching";
 import type { CoreStage, ErrorCode, Findings, OutputFile, ScanData, Settings } from "./types";
@@ -16,11 +16,16 @@ export interface Calls {
   start: { args: { base: string; threads: number }; result: CoreInfo };
   open: { args: { file: Blob; name: string }; result: ScanData };
   /**
-   * Puts a user's model files to use in place of the bundled ones; with none, the bundled ones again. `landmarks`: of an
-   * earlier answer. All that was found before is dropped.
+   * Puts a user's model files to use in place of the bundled ones: new ones, and of those held the ones that do not give
+   * way to them; with none, the bundled ones again. `learnt`: `landmarks` of earlier answers, text by sha256. All that
+   * was found before is then dropped; on failure nothing changes.
    */
   models: {
-    args: { files: { file: Blob; name: string }[]; landmarks: ModelsInfo["landmarks"] };
+    args: {
+      fresh: ModelFile[];
+      held: (ModelFile & { kind: ModelKind })[];
+      learnt: Record<string, string>;
+    };
     result: ModelsInfo;
   };
   /** Takes settings over; answers how many of the core's stages still hold. */

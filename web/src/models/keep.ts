@@ -1,6 +1,6 @@
 // The user's model files kept on this computer, when asked for: in the browser's private file system, which no site but
 // this one can read.
-import { files, info, type OwnFile } from "./own";
+import { files, info, learnt, type OwnFile } from "./own";
 import { kModelKinds, type ModelKind, type ModelsInfo } from "./types";
 
 const FOLDER = "models";
@@ -10,6 +10,8 @@ const WANTED = "vitruvian-models-kept";
 interface Index {
   files: { kind: ModelKind; name: string }[];
   info: ModelsInfo;
+  /** own.learnt */
+  learnt: [sha256: string, text: string][];
 }
 
 /** Whether models were kept at an earlier visit. */
@@ -35,7 +37,11 @@ export async function keep(): Promise<void> {
   const root = await navigator.storage.getDirectory();
   const folder = await root.getDirectoryHandle(FOLDER, { create: true });
   for (const { kind, file } of files.peek()) await write(folder, fileName(kind), file);
-  const index: Index = { files: files.peek().map(({ kind, name }) => ({ kind, name })), info: made };
+  const index: Index = {
+    files: files.peek().map(({ kind, name }) => ({ kind, name })),
+    info: made,
+    learnt: [...learnt],
+  };
   await write(folder, INDEX, JSON.stringify(index));
   localStorage.setItem(WANTED, "1");
 }
@@ -50,14 +56,18 @@ export async function forget(): Promise<void> {
 }
 
 /** What was kept. @throws when it is not there or damaged */
-export async function restored(): Promise<{ files: OwnFile[]; info: ModelsInfo }> {
+export async function restored(): Promise<Omit<Index, "files"> & { files: OwnFile[] }> {
   const root = await navigator.storage.getDirectory();
   const folder = await root.getDirectoryHandle(FOLDER);
   const read = async (name: string) => (await folder.getFileHandle(name)).getFile();
   const index = JSON.parse(await (await read(INDEX)).text()) as Index;
   const found: OwnFile[] = [];
-  for (const { kind, name } of index.files) found.push({ kind, name, file: await read(fileName(kind)) });
-  return { files: found, info: index.info };
+  for (const { kind, name } of index.files) {
+    // A copy: what is kept is replaced while it is in use.
+    const file = new Blob([await (await read(fileName(kind))).arrayBuffer()]);
+    found.push({ kind, name, file });
+  }
+  return { files: found, info: index.info, learnt: index.learnt };
 }
 
 function fileName(kind: ModelKind): string {

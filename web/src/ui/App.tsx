@@ -4,8 +4,8 @@ import { droppedFiles, isPile } from "../batch/files";
 import * as queue from "../batch/queue";
 import { kCoreStages, kStages } from "../core/types";
 import { tool as editorTool } from "../editor/state";
-import { isModelFile } from "../models/own";
-import { addModel, restore } from "../models/use";
+import { asModels, isModelFile } from "../models/own";
+import { addModels, restore } from "../models/use";
 import { cancel, openFile, register, run } from "./actions";
 import { About, Help } from "./Dialogs";
 import { Header } from "./Header";
@@ -123,22 +123,35 @@ export function App() {
 
 /** A scan, or a model file of the user's. */
 async function open(file: File): Promise<void> {
-  if (!isModelFile(file.name)) return openFile(file, file.name);
-  state.stage.value = "pose";
-  await addModel(file, file.name);
+  if (isModelFile(file.name)) await useModels([file]);
+  else await openFile(file, file.name);
 }
 
-/** One scan is opened; several, or a folder, make a batch. */
+/** Puts model files to use, where they are listed. */
+async function useModels(files: File[]): Promise<void> {
+  mode.value = "scan";
+  state.stage.value = "pose";
+  await addModels(asModels(files));
+}
+
+/** Model files are put to use; of the rest, one scan is opened, several, or a folder, make a batch. */
 async function dropped(transfer: DataTransfer): Promise<void> {
-  const file = transfer.files[0];
-  if (mode.value !== "batch" && !isPile(transfer)) {
-    if (mode.value === "body") mode.value = "scan";
-    if (file) await open(file);
-    return;
+  const pile = isPile(transfer);
+  const files = await droppedFiles(transfer);
+  const models = files.filter(({ name }) => isModelFile(name));
+  const scans = files.filter(({ name }) => !isModelFile(name));
+  const before = mode.value;
+  if (models.length > 0) {
+    await useModels(models);
+    if (scans.length === 0 || state.problem.value) return;
   }
-  const files = droppedFiles(transfer);
-  mode.value = "batch";
-  queue.add(await files);
+  if (before === "batch" || (pile && (models.length === 0 || scans.length > 1))) {
+    mode.value = "batch";
+    queue.add(scans);
+  } else if (scans[0]) {
+    mode.value = before === "body" ? "scan" : before;
+    await openFile(scans[0], scans[0].name);
+  }
 }
 
 /** Says progress and outcomes to screen readers. */

@@ -1,9 +1,18 @@
+import { Fragment } from "preact";
 import { useRef } from "preact/hooks";
 import * as own from "../models/own";
-import { addModel, setKept, useBundled } from "../models/use";
+import { asModels } from "../models/own";
+import type { ModelKind } from "../models/types";
+import { addModels, removeModel, setKept, useBundled } from "../models/use";
 import { bytes, integer } from "../result/format";
 import { busy } from "./state";
 import "./inputs.css";
+
+const KINDS: Record<ModelKind, string> = {
+  body: "Body file",
+  "soft tissue": "Soft tissue",
+  prior: "Pose prior",
+};
 
 /** The user's own model files: what is in use, and how to bring, keep and leave them. */
 export function OwnModels() {
@@ -20,12 +29,20 @@ export function OwnModels() {
             shape components
           </dd>
           {own.files.value.map(({ kind, name, file }) => (
-            <>
-              <dt key={`${kind} kind`}>{kind}</dt>
-              <dd key={kind}>
-                {name}, {bytes(file.size)}
+            <Fragment key={kind}>
+              <dt>{KINDS[kind]}</dt>
+              <dd>
+                {name}, {bytes(file.size)}{" "}
+                <button
+                  type="button"
+                  disabled={working}
+                  aria-label={`Remove ${name}`}
+                  onClick={() => void removeModel(kind)}
+                >
+                  Remove
+                </button>
               </dd>
-            </>
+            </Fragment>
           ))}
         </dl>
       )}
@@ -43,13 +60,14 @@ export function OwnModels() {
         ref={picker}
         class="hidden"
         type="file"
+        multiple
         accept=".pkl,.npz,.ckpt,.pt,.pth,.vbm,.vpp"
         aria-label="Model file"
         tabIndex={-1}
         onChange={(event) => {
-          const file = event.currentTarget.files?.[0];
+          const files = [...(event.currentTarget.files ?? [])];
           event.currentTarget.value = "";
-          if (file) void addModel(file, file.name);
+          if (files.length > 0) void addModels(asModels(files));
         }}
       />
       {info ? (
@@ -65,8 +83,8 @@ export function OwnModels() {
         </label>
       ) : (
         <p class="quiet">
-          SMPL, SMPL+H, SMPL-X or STAR (.pkl, .npz), DMPL (.npz), VPoser (.ckpt): drop them on the page. They
-          stay on this computer.
+          SMPL, SMPL+H, SMPL-X or STAR (.pkl, .npz), DMPL (.npz), VPoser (.ckpt): drop them on the page,
+          together those that belong together. They stay on this computer.
         </p>
       )}
       {own.keepingFailed.value && (

@@ -1,6 +1,6 @@
 // Typed view of the WASM module: the only place that knows its entry points.
 import type { MeasurementsReport, Section } from "../core/measurements";
-import type { EnergyPoint } from "../core/messages";
+import type { Calls, EnergyPoint } from "../core/messages";
 import {
   type AlignData,
   CoreError,
@@ -14,7 +14,7 @@ import {
   type Settings,
   type ViewData,
 } from "../core/types";
-import { kModelKinds, type ModelKind, type ModelsInfo } from "../models/types";
+import { givesWay, kModelKinds, type ModelFile, type ModelKind, type ModelsInfo } from "../models/types";
 import { load } from "./load";
 import type { Network } from "./networks";
 
@@ -190,25 +190,27 @@ export class Core {
     }
   }
 
-  /** Puts a user's model files to use, or the bundled ones again. @param known landmarks learnt before */
+  /** Puts a user's model files to use, or the bundled ones again. See Calls["models"]. */
   async useModels(
-    files: readonly { file: Blob; name: string }[],
-    known: ModelsInfo["landmarks"],
+    { fresh, held, learnt }: Calls["models"]["args"],
     runNetwork: RunNetwork,
   ): Promise<ModelsInfo> {
     this.cancelled = false;
     const kinds: ModelKind[] = [];
-    for (const { file, name } of files) {
-      const address = await this.store(file, "Loading the model");
-      const kind = this.withText(name, (title) =>
-        this.check(this.module._vitruvian_add_model(address, file.size, title)),
-      );
-      kinds.push(kModelKinds[kind - 1]!);
-    }
-    this.withText(JSON.stringify(known), (text) => this.check(this.module._vitruvian_use_models(text)));
+    for (const each of fresh) kinds.push(await this.addModel(each));
+    for (const each of held) if (!givesWay(each.kind, kinds)) await this.addModel(each);
+    this.withText(JSON.stringify(learnt), (text) => this.check(this.module._vitruvian_use_models(text)));
     await this.answerAll(runNetwork, false);
     const info = this.json<Omit<ModelsInfo, "kinds">>(this.module._vitruvian_model_report());
     return { ...info, kinds };
+  }
+
+  private async addModel({ file, name }: ModelFile): Promise<ModelKind> {
+    const address = await this.store(file, "Loading the model");
+    const kind = this.withText(name, (title) =>
+      this.check(this.module._vitruvian_add_model(address, file.size, title)),
+    );
+    return kModelKinds[kind - 1]!;
   }
 
   /** Takes settings over. @returns how many of kCoreStages still hold. @throws CoreError */

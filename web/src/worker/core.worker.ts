@@ -75,16 +75,16 @@ const handlers: Handlers = {
     };
   },
 
-  async models({ files, landmarks }) {
+  async models(args) {
     const core = theCore();
     const networks = await prepared();
     try {
-      return await core.useModels(files, landmarks, (network, input) => networks.run(network, input));
+      return await core.useModels(args, (network, input) => networks.run(network, input));
     } catch (error) {
       const known = toCoreError(error);
-      // These speak of scans elsewhere.
-      if (known.code !== "bad_file" && known.code !== "unsupported_format") throw known;
-      throw new CoreError("bad_model", known.message);
+      // These speak of scans and settings elsewhere.
+      const about = ["bad_file", "unsupported_format", "usage", "cannot_read", "out_of_memory"];
+      throw about.includes(known.code) ? new CoreError("bad_model", known.message) : known;
     }
   },
 
