@@ -144,7 +144,10 @@ ordered_json settings_to_json(const Settings& settings) {
 
 Settings settings_from_json(const JsonValue& value) {
   Settings settings;
-  for (const auto& [name, read] : kReaders) read(value.at(name), settings);
+  if (given(value, "method")) settings = settings_of(named<Method>(value.at("method")));
+  for (const auto& [name, read] : kReaders) {
+    if (given(value, name)) read(value.at(name), settings);
+  }
   read_edits(value, settings);
   return settings;
 }
@@ -156,13 +159,7 @@ Settings chosen_settings(const JsonValue& value) {
         std::find(kEdits.begin(), kEdits.end(), name) == kEdits.end())
       member.fail("there is no setting of this name");
   });
-  Settings settings;
-  if (given(value, "method")) settings = settings_of(named<Method>(value.at("method")));
-  for (const auto& [name, read] : kReaders) {
-    if (given(value, name)) read(value.at(name), settings);
-  }
-  read_edits(value, settings);
-  return settings;
+  return settings_from_json(value);
 }
 
 }  // namespace vitruvian

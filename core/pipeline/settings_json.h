@@ -11,11 +11,11 @@ namespace vitruvian {
 /// start) with its numbers, so that the registration can be run again without the files they came from.
 nlohmann::ordered_json settings_to_json(const Settings& settings);
 
+/// What is missing, as in files of earlier versions, or null is as settings_of() the method says.
 /// @throws Error(bad_file) naming the place.
 Settings settings_from_json(const JsonValue& value);
 
-/// Settings that somebody chose: an object with any of the members that settings_to_json() writes. What is
-/// missing or null is as settings_of() the method says, so that `{"method": "paper"}` is the published
+/// Settings that somebody chose: as settings_from_json(), so that `{"method": "paper"}` is the published
 /// pipeline and further members override its stages, as the command line's options do.
 /// @throws Error(bad_file) naming the place; also for a name that is none of a setting.
 Settings chosen_settings(const JsonValue& value);

@@ -237,7 +237,13 @@ TEST(ResultJson, ComplaintsNameFileAndPlace) {
   j = good;
   j.erase("settings");
   EXPECT_EQ(complaint(j), "r.json: \"settings\" is missing");
+  // Earlier versions wrote fewer settings.
   j = good;
+  j["settings"] = {{"method", "paper-cpu"}, {"chunk", 64}};
+  EXPECT_EQ(complaint(j), "");
+  const Settings earlier = parse_registration(j.dump(), "r.json").settings;
+  EXPECT_EQ(earlier.iterations, settings_of(Method::paper_cpu).iterations);
+  EXPECT_EQ(earlier.chunk, 64);
   j["settings"]["up"] = "w";
   EXPECT_NE(complaint(j).find("settings.up: one of auto x y z -x -y -z"), std::string::npos);
   EXPECT_NE(complaint(ordered_json::array()).find("no registration.json"), std::string::npos);
