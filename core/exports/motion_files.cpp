@@ -1,6 +1,7 @@
 #include "exports/motion_files.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -10,12 +11,26 @@
 namespace vitruvian {
 namespace {
 
-constexpr int kBodyJoints = 22;
+constexpr int kBodyJoints = 22, kHandJoints = 15, kFaceJoints = 3;
 constexpr std::size_t kAmassPose = 156, kAmassDmpls = 8;
 
 /// The linear coefficients without expression and soft tissue.
 Eigen::VectorXd shape_of(const ExportedBody& body) {
   return body.state.betas.head(std::min<Index>(body.state.betas.size(), body.model.shape_count()));
+}
+
+/// The expression coefficients; none of a model without a face.
+Eigen::VectorXd expression_of(const ExportedBody& body) {
+  if (body.state.betas.size() != body.model.beta_count()) return {};
+  return body.state.betas.segment(body.model.shape_count(), body.model.expression_count);
+}
+
+/// The fingers of the left hand, then those of the right (3 x 30); none of a model that has none.
+Points3d fingers_of(const ExportedBody& body, const Points3d& pose) {
+  const Index begin = kBodyJoints + (body.model.family == "smplx" ? kFaceJoints : 0);
+  const bool has_hands = body.model.family == "smplx" || body.model.family == "smplh";
+  if (!has_hands || pose.cols() != begin + 2 * kHandJoints) return Points3d(3, 0);
+  return pose.rightCols(2 * kHandJoints);
 }
 
 std::string number(double value, const char* format) {
@@ -43,6 +58,8 @@ std::string to_amass_npz(const ExportedBody& body) {
   for (Index j = 0; j < std::min<Index>(kBodyJoints, pose.cols()); ++j) {
     for (int k = 0; k < 3; ++k) poses[static_cast<std::size_t>(3 * j + k)] = pose(k, j);
   }
+  const Points3d fingers = fingers_of(body, pose);
+  std::copy_n(fingers.data(), fingers.size(), poses.begin() + 3 * kBodyJoints);
   const std::vector<double> trans(translation.data(), translation.data() + 3), rate = {30};
   const Eigen::VectorXd shape = shape_of(body);
   const std::vector<double> betas(shape.data(), shape.data() + shape.size());
@@ -77,6 +94,12 @@ std::string to_smpl_codec(const ExportedBody& body) {
   const auto view = [](const auto& m) {
     return std::span<const float>(m.data(), static_cast<std::size_t>(m.size()));
   };
+  const Points3f fingers = fingers_of(body, pose).cast<float>();
+  const Points3f left = fingers.leftCols(fingers.cols() / 2), right = fingers.rightCols(fingers.cols() / 2);
+  const Points3f face = version == 2 && fingers.cols() > 0
+                            ? Points3f(pose.middleCols(kBodyJoints, kFaceJoints).cast<float>())
+                            : Points3f(3, 0);
+  const Eigen::VectorXf expression = expression_of(body).cast<float>();
   std::vector<NpzItem> items(8);
   items[0] = {.name = "codecVersion", .shape = {}, .integers = codec};
   items[1] = {.name = "smplVersion", .shape = {}, .integers = smpl};
@@ -87,6 +110,17 @@ std::string to_smpl_codec(const ExportedBody& body) {
   items[5] = {.name = "frameRate", .shape = {}, .floats = rate};
   items[6] = {.name = "bodyTranslation", .shape = {1, 3}, .floats = view(translation)};
   items[7] = {.name = "bodyPose", .shape = {1, static_cast<std::size_t>(joints), 3}, .floats = view(rounded)};
+  if (fingers.cols() > 0) {
+    items.push_back({.name = "leftHandPose", .shape = {1, kHandJoints, 3}, .floats = view(left)});
+    items.push_back({.name = "rightHandPose", .shape = {1, kHandJoints, 3}, .floats = view(right)});
+  }
+  if (face.cols() > 0)
+    items.push_back({.name = "headPose", .shape = {1, kFaceJoints, 3}, .floats = view(face)});
+  if (expression.size() > 0) {
+    items.push_back({.name = "expressionParameters",
+                     .shape = {static_cast<std::size_t>(expression.size())},
+                     .floats = view(expression)});
+  }
   return to_npz(items);
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <tuple>
 
 #include "core/body/random_model.h"
 #include "exports/html_report.h"
@@ -151,6 +152,41 @@ TEST(MotionFiles, SmplCodec) {
   EXPECT_EQ(npz.array("shapeParameters").values.size(), 5u);
   EXPECT_EQ(npz.array("gender").values, std::vector<double>{2});
   EXPECT_NEAR(npz.array("bodyTranslation").values[1], sample.body.state.translation.y(), 1e-6);
+}
+
+TEST(MotionFiles, KeepHandsAndFaceWhereTheFormatHasThem) {
+  const auto values = [](const Points3d& points) {
+    return std::vector<double>(points.data(), points.data() + points.size());
+  };
+  const auto near = [](const std::vector<double>& found, const std::vector<double>& expected) {
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-6) << i;
+  };
+  for (const auto& [family, joints, expressions] :
+       std::vector<std::tuple<std::string, int, int>>{{"smplh", 52, 0}, {"smplx", 55, 3}}) {
+    SCOPED_TRACE(family);
+    BodyModel model = testing::random_model(5, joints, 120, 8, 6);
+    model.family = family;
+    model.expression_count = expressions;
+    const ExportedBody body{model, testing::random_state(model, 6)};
+    const Points3d pose = body.state.axis_angle();
+    const std::string codec_file = to_smpl_codec(body), amass_file = to_amass_npz(body);
+    const NpzFile codec(bytes_of(codec_file), "body.smpl"), amass(bytes_of(amass_file), "amass.npz");
+    EXPECT_EQ(codec.array("bodyPose").shape, (std::vector<std::size_t>{1, 22, 3}));
+    EXPECT_EQ(codec.array("leftHandPose").shape, (std::vector<std::size_t>{1, 15, 3}));
+    near(codec.array("leftHandPose").values, values(pose.middleCols(joints - 30, 15)));
+    near(codec.array("rightHandPose").values, values(pose.rightCols(15)));
+    const std::vector<double> poses = amass.array("poses").values;
+    near({poses.begin() + 66, poses.end()}, values(pose.rightCols(30)));
+    const Eigen::VectorXd betas = body.state.betas;
+    const Index shapes = betas.size() - expressions;
+    near(codec.array("shapeParameters").values, {betas.data(), betas.data() + shapes});
+    EXPECT_EQ(codec.has("headPose"), expressions > 0);
+    EXPECT_EQ(codec.has("expressionParameters"), expressions > 0);
+    if (expressions == 0) continue;
+    near(codec.array("headPose").values, values(pose.middleCols(22, 3)));
+    near(codec.array("expressionParameters").values, {betas.data() + shapes, betas.data() + betas.size()});
+  }
 }
 
 TEST(MotionFiles, MarkersForOpenSim) {
