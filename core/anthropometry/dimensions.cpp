@@ -306,7 +306,7 @@ double line_length(const std::vector<Vec3d>& corners) {
 }  // namespace
 
 std::vector<Dimension> measure_dimensions(const Figure& standing, const Figure& scanned,
-                                          const LandmarkSet& landmarks, const FitErrors& errors) {
+                                          const LandmarkSet& landmarks, const FitQuality& fit) {
   std::vector<Dimension> result;
   Taker taker(standing, landmarks);
   for (const DimensionSpec& spec : dimension_specs()) {
@@ -321,9 +321,9 @@ std::vector<Dimension> measure_dimensions(const Figure& standing, const Figure& 
       dimension.standard = spec.standard;
       dimension.definition = spec.definition;
       dimension.side = side;
-      dimension.fit_error_m = mean_fit_error(finding->touched, errors);
+      dimension.fit_error_m = mean_fit_error(finding->touched, fit.errors);
       dimension.course_kind = finding->kind;
-      set_uncertainty(dimension, spec.id, finding->tape && finding->tape->closed);
+      set_uncertainty(dimension, spec.id, finding->tape && finding->tape->closed, fit.refined);
       const bool on_landmarks = !finding->line.empty();
       for (const Posture posture : {Posture::standing, Posture::scanned}) {
         const Figure& figure = posture == Posture::standing ? standing : scanned;

@@ -42,12 +42,18 @@ struct Dimension {
 /// observed.
 using FitErrors = std::array<std::optional<double>, kSegmentCount>;
 
+/// How near the measured body is to its scan.
+struct FitQuality {
+  FitErrors errors;
+  bool refined = false;  ///< whether the body has vertex offsets (`--detail vertex`)
+};
+
 /// All dimensions that can be taken on this body.
 /// @param standing  the body in standard_posture(); every dimension is taken on it.
 /// @param scanned   the same body in the pose of the scan: tapes and lines are laid over the same points of
 /// its
 ///                  skin. Heights, extents and levels have no meaning there and are left out.
 std::vector<Dimension> measure_dimensions(const Figure& standing, const Figure& scanned,
-                                          const LandmarkSet& landmarks, const FitErrors& errors);
+                                          const LandmarkSet& landmarks, const FitQuality& fit);
 
 }  // namespace vitruvian

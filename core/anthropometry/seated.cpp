@@ -36,8 +36,8 @@ bool all(const Vec3d& /*at*/) { return true; }
 
 class Sitter {
  public:
-  Sitter(const Figure& figure, const LandmarkSet& landmarks, const FitErrors& errors)
-      : figure_(figure), landmarks_(landmarks), errors_(errors) {}
+  Sitter(const Figure& figure, const LandmarkSet& landmarks, const FitQuality& fit)
+      : figure_(figure), landmarks_(landmarks), fit_(fit) {}
 
   std::vector<Dimension> take() {
     const double floor = figure_.vertices.row(1).minCoeff();
@@ -99,9 +99,9 @@ class Sitter {
     dimension.side = side;
     dimension.posture = Posture::sitting;
     dimension.value_m = value;
-    dimension.fit_error_m = mean_fit_error(segments, errors_);
+    dimension.fit_error_m = mean_fit_error(segments, fit_.errors);
     dimension.course_kind = kind;
-    set_uncertainty(dimension, id, false);
+    set_uncertainty(dimension, id, false, fit_.refined);
     dimension.course = std::move(course);
     found_.push_back(std::move(dimension));
   }
@@ -137,15 +137,15 @@ class Sitter {
 
   const Figure& figure_;
   const LandmarkSet& landmarks_;
-  const FitErrors& errors_;
+  const FitQuality& fit_;
   std::vector<Dimension> found_;
 };
 
 }  // namespace
 
 std::vector<Dimension> measure_seated(const Figure& seated, const LandmarkSet& landmarks,
-                                      const FitErrors& errors) {
-  return Sitter(seated, landmarks, errors).take();
+                                      const FitQuality& fit) {
+  return Sitter(seated, landmarks, fit).take();
 }
 
 }  // namespace vitruvian

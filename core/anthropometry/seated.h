@@ -10,6 +10,6 @@ namespace vitruvian {
 /// @param seated  the body in seated_posture(). The seat is at the lowest point of buttocks and thighs: no
 /// chair presses the flesh, so heights above the seat come out a little large.
 std::vector<Dimension> measure_seated(const Figure& seated, const LandmarkSet& landmarks,
-                                      const FitErrors& errors);
+                                      const FitQuality& fit);
 
 }  // namespace vitruvian

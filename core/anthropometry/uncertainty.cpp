@@ -28,12 +28,14 @@ std::optional<double> mean_fit_error(SegmentSet segments, const FitErrors& error
   return sum / count;
 }
 
-std::optional<double> known_uncertainty(std::string_view id, std::optional<double> fit_error_m) {
+std::optional<double> known_uncertainty(std::string_view id, bool refined,
+                                        std::optional<double> fit_error_m) {
   if (!fit_error_m) return std::nullopt;
   for (const DimensionError& known : dimension_errors()) {
     if (known.id != id) continue;
-    const double worse = known.fit_mm > 0 ? 1e3 * *fit_error_m / known.fit_mm : 1;
-    return 1e-3 * known.rms_mm * std::max(1.0, worse);
+    const DimensionError::Size& size = refined ? known.refined : known.parametric;
+    const double worse = size.fit_mm > 0 ? 1e3 * *fit_error_m / size.fit_mm : 1;
+    return 1e-3 * size.rms_mm * std::max(1.0, worse);
   }
   return std::nullopt;
 }
@@ -44,8 +46,8 @@ std::optional<double> estimated_uncertainty(CourseKind kind, bool closed, std::o
   return std::hypot((closed ? std::numbers::pi : std::numbers::sqrt2) * *fit_error_m, kLandmarkSlide);
 }
 
-void set_uncertainty(Dimension& dimension, std::string_view id, bool closed) {
-  dimension.uncertainty_m = known_uncertainty(id, dimension.fit_error_m);
+void set_uncertainty(Dimension& dimension, std::string_view id, bool closed, bool refined) {
+  dimension.uncertainty_m = known_uncertainty(id, refined, dimension.fit_error_m);
   dimension.uncertainty_is_measured = dimension.uncertainty_m.has_value();
   if (!dimension.uncertainty_m) {
     dimension.uncertainty_m = estimated_uncertainty(dimension.course_kind, closed, dimension.fit_error_m);

@@ -69,9 +69,9 @@ MeasuredRegistration::MeasuredRegistration(const Registration& registration, con
       scan_from_body_(registration.alignment.body_from_scan.inverse()) {
   report_.registration_sha256 = std::move(sha256);
   report_.body = measure_body(scanned_);
-  const FitErrors errors = fit_errors(registration);
-  report_.dimensions = measure_dimensions(standing_, scanned_, landmarks_, errors);
-  for (Dimension& seated : measure_seated(seated_, landmarks_, errors)) {
+  const FitQuality fit{fit_errors(registration), rest_offsets_.cols() > 0};
+  report_.dimensions = measure_dimensions(standing_, scanned_, landmarks_, fit);
+  for (Dimension& seated : measure_seated(seated_, landmarks_, fit)) {
     report_.dimensions.push_back(std::move(seated));
   }
   const auto rows = error_rows(registration);

@@ -150,9 +150,13 @@ def table(rows):
     return "\n".join(lines), summary
 
 
-def source(summary, people):
+def source(parametric, refined, people):
     """The C++ table that each value's uncertainty comes from."""
-    rows = "".join(f'    DimensionError{{"{name}", {s["rms_mm"]:.2f}, {s["fit_mm"]:.2f}}},\n' for name, s in sorted(summary.items()))
+    def size(summary):
+        return f"{{{summary['rms_mm']:.2f}, {summary['fit_mm']:.2f}}}"
+
+    rows = "".join(f'    DimensionError{{"{name}", {size(parametric[name])}, {size(refined[name])}}},\n'
+                   for name in sorted(parametric) if name in refined)
     return f"""// Made by `scripts/measurement_error --scanner FOLDER --source FILE` from scans of {people} people; not to be edited.
 #include "anthropometry/dimension_errors.h"
 

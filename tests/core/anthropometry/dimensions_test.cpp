@@ -22,11 +22,11 @@ const LandmarkSet& landmarks() {
 }
 
 std::map<std::string, Dimension> dimensions_of(const BodyState& scanned_state, Posture posture,
-                                               const FitErrors& errors = {}) {
+                                               const FitQuality& fit = {}) {
   const Figure standing(measured_body(), standard_posture(measured_body(), scanned_state.betas));
   const Figure scanned(measured_body(), scanned_state);
   std::map<std::string, Dimension> result;
-  for (const Dimension& d : measure_dimensions(standing, scanned, landmarks(), errors)) {
+  for (const Dimension& d : measure_dimensions(standing, scanned, landmarks(), fit)) {
     if (d.posture == posture) EXPECT_TRUE(result.emplace(d.id, d).second) << d.id;
   }
   return result;
@@ -162,9 +162,9 @@ TEST(Dimensions, AsScannedEqualsStandardWhenScannedInTheStandardPosture) {
 }
 
 TEST(Dimensions, UncertaintyGrowsWithTheFitsError) {
-  FitErrors good, bad;
-  good.fill(0.001);
-  bad.fill(0.030);
+  FitQuality good, bad;
+  good.errors.fill(0.001);
+  bad.errors.fill(0.030);
   const BodyState rest = BodyState::rest(testing::made_body());
   const auto a = dimensions_of(rest, Posture::standing, good),
              b = dimensions_of(rest, Posture::standing, bad);

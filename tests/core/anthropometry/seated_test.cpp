@@ -16,9 +16,9 @@ Figure seated_figure(const Eigen::VectorXd& betas) {
   return {measured_body(), seated_posture(measured_body(), betas)};
 }
 
-std::map<std::string, Dimension> seated_dimensions(const Figure& figure, const FitErrors& errors = {}) {
+std::map<std::string, Dimension> seated_dimensions(const Figure& figure, const FitQuality& fit = {}) {
   std::map<std::string, Dimension> result;
-  for (const Dimension& d : measure_seated(figure, LandmarkSet(measured_body()), errors)) {
+  for (const Dimension& d : measure_seated(figure, LandmarkSet(measured_body()), fit)) {
     EXPECT_TRUE(result.emplace(d.id, d).second) << d.id;
   }
   return result;
