@@ -96,6 +96,9 @@ def run(case, options, segments):
             row.update(surface_mm=error["surface_all"]["mean_mm"], point_mm=error["all"]["mean_mm"],
                        scan_to_model_mm=error["scan_to_model"]["mean_mm"],
                        surface_segments_mm=by_segment(error["surface_segments"]), point_segments_mm=by_segment(error["segments"]))
+            features = result["verdict"].get("features")
+            if features:
+                row["seen_surface_mm"] = features["model_to_scan_mean_mm"]  # without what the scan cannot show
         mesh = results / scan.stem / "registered.ply"
         if process.returncode in (0, 1) and row["verdict"] != "failed" and mesh.exists():
             row["registered"] = str(mesh)
