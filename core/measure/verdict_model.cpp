@@ -10,25 +10,25 @@ namespace vitruvian {
 namespace {
 
 /// Printed by scripts/verdict_study, in the order of VerdictInput. `usual`: mean of right registrations.
-constexpr double kBias = -12.8219, kConfidenceOfOk = 0.4784;
+constexpr double kBias = -10.8243, kConfidenceOfOk = 0.4785;
 struct Weight {
   double weight, usual;
 };
 constexpr std::array<Weight, kVerdictInputs> kWeights = {{
-    {0.7734, 0.3779},  // model_to_scan_p95
-    {0.2786, 0.3426},  // scan_to_model_p95
-    {0.7545, 0.9483},  // typical
-    {0.3814, 0.0481},  // unexplained
-    {0.0000, 0.2299},  // opposed
-    {0.7444, 0.3665},  // part_model_to_scan
-    {1.5645, 0.5946},  // uneven
-    {0.0635, 0.3519},  // part_scan_to_model
-    {1.1370, 0.2369},  // part_opposed
-    {3.1575, 0.5228},  // limb_misfit
-    {2.5179, 0.0341},  // joint_limits
-    {0.6007, 0.4288},  // disagreement
-    {0.7352, 1.0834},  // inside
-    {1.0231, 0.0049},  // lost_parts
+    {1.1060, 0.3662},  // model_to_scan_p95
+    {0.3611, 0.3154},  // scan_to_model_p95
+    {1.6410, 0.9453},  // typical
+    {0.2693, 0.0303},  // unexplained
+    {0.0000, 0.2203},  // opposed
+    {0.9056, 0.3627},  // part_model_to_scan
+    {1.2089, 0.6018},  // uneven
+    {0.0000, 0.3235},  // part_scan_to_model
+    {0.9903, 0.2324},  // part_opposed
+    {0.0900, 0.5239},  // limb_misfit
+    {2.2203, 0.0267},  // joint_limits
+    {0.7941, 0.4351},  // disagreement
+    {0.6599, 1.1002},  // inside
+    {0.6361, 0.0029},  // lost_parts
 }};
 
 double logarithm(double value, double unit) { return std::log1p(std::max(0.0, value) / unit); }
