@@ -67,6 +67,7 @@ effect(() => {
 export async function open(tool: state.Tool): Promise<void> {
   const needed = NEEDED[tool];
   try {
+    await painting.settled();
     takePainting();
     if (!state.base.value || (tool === "joints" && state.base.value.found.length === 0)) {
       if (state.base.value) await apply();
@@ -147,6 +148,7 @@ export async function apply(): Promise<void> {
 }
 
 export async function registerEdited(): Promise<void> {
+  await painting.settled();
   close();
   await apply();
   await register();
@@ -355,6 +357,7 @@ export async function importKeypoints(file: File): Promise<void> {
 
 export async function saveProject(): Promise<void> {
   try {
+    await painting.settled();
     takePainting();
     await apply();
     const { text } = await askEditor({ do: "save_project", edits: effective() });

@@ -105,7 +105,7 @@ export function PaintPane() {
     const camera = current.camera(side);
     const erase = event.shiftKey;
     if (tool === "part") {
-      void painting.strokeAtOnce(side, camera, { with: "part", way: [at] }, erase);
+      painting.strokeAtOnce(side, camera, { with: "part", way: [at] }, erase);
       return;
     }
     if (tool === "lasso") lasso.value = { side, points: [at] };
@@ -132,7 +132,7 @@ export function PaintPane() {
       this.removeEventListener("pointermove", onMove);
       this.removeEventListener("pointerup", onEnd);
       this.removeEventListener("pointercancel", onEnd);
-      if (tool === "brush") void painting.endBrush();
+      if (tool === "brush") painting.endBrush();
       else closeLasso(erase);
     };
     this.addEventListener("pointermove", onMove);
@@ -145,7 +145,7 @@ export function PaintPane() {
     lasso.value = null;
     if (!drawn || drawn.points.length < 3 || !view.value) return;
     const camera = view.value.camera(drawn.side);
-    void painting.strokeAtOnce(drawn.side, camera, { with: "lasso", way: drawn.points }, erase);
+    painting.strokeAtOnce(drawn.side, camera, { with: "lasso", way: drawn.points }, erase);
   }
 
   function onPointerMove(event: PointerEvent): void {
@@ -200,14 +200,9 @@ export function PaintPane() {
     if (tool === "lasso") {
       const points = lasso.value?.side === side ? lasso.value.points : [];
       lasso.value = { side, points: [...points, at] };
-    } else if (tool === "part") void painting.strokeAtOnce(side, camera, { with: "part", way: [at] }, false);
+    } else if (tool === "part") painting.strokeAtOnce(side, camera, { with: "part", way: [at] }, false);
     else if (tool === "brush")
-      void painting.strokeAtOnce(
-        side,
-        camera,
-        { with: "brush", radius: state.radius.value, way: [at] },
-        false,
-      );
+      painting.strokeAtOnce(side, camera, { with: "brush", radius: state.radius.value, way: [at] }, false);
   }
 
   const colour =
@@ -218,7 +213,7 @@ export function PaintPane() {
       {SIDES.map((side) => (
         <div
           key={side}
-          class={`pane ${state.tool.value}`}
+          class={`pane with-${state.tool.value}`}
           data-pane={side}
           // biome-ignore lint/a11y/noNoninteractiveTabindex: the keyboard paints and turns here
           tabIndex={0}

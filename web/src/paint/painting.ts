@@ -36,7 +36,7 @@ function setPairs(pairs: readonly work.Pair[]): void {
 
 export function undo(): void {
   const command = state.done.value.at(-1);
-  if (!command || stroke) return;
+  if (!command || strokes.length > 0) return;
   batch(() => {
     work.undo(state.labels.value, command);
     state.done.value = state.done.value.slice(0, -1);
@@ -48,7 +48,7 @@ export function undo(): void {
 
 export function redo(): void {
   const command = state.undone.value[0];
-  if (!command || stroke) return;
+  if (!command || strokes.length > 0) return;
   batch(() => {
     work.redo(state.labels.value, command);
     state.done.value = [...state.done.value, command];
@@ -60,7 +60,8 @@ export function redo(): void {
 
 /** Forgets everything: another scan or body model. */
 export function forget(): void {
-  stroke = null;
+  strokes = [];
+  drawn = null;
   batch(() => {
     state.scanMesh.value = null;
     state.templateMesh.value = null;
@@ -125,17 +126,22 @@ export function toHandOver(): RegionSet | null | undefined {
   return regions;
 }
 
-/* ---- strokes: one question to the core at a time, the way between two of them in one ---- */
+/* ---- strokes: the core is asked one thing at a time; who paints faster is not kept waiting ---- */
 
 interface Running {
-  work: work.Brushwork;
-  label: number;
-  title: string;
-  camera: PaintCamera;
-  way: [number, number][];
-  asking: Promise<void> | null;
+  readonly work: work.Brushwork;
+  readonly label: number;
+  readonly title: string;
+  readonly camera: PaintCamera;
+  /** still to be asked */
+  readonly requests: Stroke[];
+  ended: boolean;
 }
-let stroke: Running | null = null;
+/** In the order in which they were begun; the first is at work. */
+let strokes: Running[] = [];
+/** The one that the pointer draws. */
+let drawn: Running | null = null;
+let working: Promise<void> | null = null;
 
 /** A pair to paint: the chosen one, or the first. */
 function target(): work.Pair {
@@ -149,37 +155,73 @@ function begin(side: Side, camera: PaintCamera, erase: boolean): Running {
   const wipes = erase || state.erasing.value;
   const pair = wipes ? null : target();
   const on = side === "scan" ? "the scan" : "the body";
-  return {
+  const begun: Running = {
     work: new work.Brushwork(state.labels.value, side),
     label: pair?.id ?? 0,
     title: pair ? `Paint ${pair.name} on ${on}` : `Erase on ${on}`,
     camera,
-    way: [],
-    asking: null,
+    requests: [],
+    ended: false,
   };
+  strokes.push(begun);
+  return begun;
 }
 
 export function beginBrush(side: Side, camera: PaintCamera, erase: boolean): void {
-  if (stroke) return;
-  stroke = begin(side, camera, erase);
+  if (!drawn) drawn = begin(side, camera, erase);
 }
 
 export function brushTo(x: number, y: number): void {
-  if (!stroke) return;
-  stroke.way.push([x, y]);
-  const running = stroke;
-  running.asking ??= brushAll(running).finally(() => {
-    running.asking = null;
+  const radius = state.radius.value;
+  const last = drawn?.requests.at(-1);
+  // The way since the last question goes into one; the first of the list may be asked already.
+  if (last?.with === "brush" && last.radius === radius && drawn!.requests.length > 1) last.way.push([x, y]);
+  else drawn?.requests.push({ with: "brush", radius, way: [...(last?.way.slice(-1) ?? []), [x, y]] });
+  workOn();
+}
+
+/** The stroke becomes a command. */
+export function endBrush(): void {
+  if (drawn) drawn.ended = true;
+  drawn = null;
+  workOn();
+}
+
+/** Two fingers turn the view: what the first one painted was not meant. */
+export function abandon(): void {
+  if (!drawn) return;
+  drawn.work.abandon();
+  strokes = strokes.filter((each) => each !== drawn);
+  drawn = null;
+  changed();
+}
+
+/** A stroke that is known at once. */
+export function strokeAtOnce(side: Side, camera: PaintCamera, request: Stroke, erase: boolean): void {
+  if (drawn) return;
+  const begun = begin(side, camera, erase);
+  begun.requests.push(request);
+  begun.ended = true;
+  workOn();
+}
+
+function workOn(): void {
+  working ??= workAll().finally(() => {
+    working = null;
   });
 }
 
-async function brushAll(running: Running): Promise<void> {
-  let last: [number, number] | undefined;
-  while (running.way.length > 0 && stroke === running) {
-    const way = last ? [last, ...running.way] : running.way;
-    running.way = [];
-    last = way.at(-1);
-    await touch(running, { with: "brush", radius: state.radius.value, way });
+async function workAll(): Promise<void> {
+  for (let first = strokes[0]; first; first = strokes[0]) {
+    const request = first.requests[0];
+    if (request) {
+      await touch(first, request);
+      first.requests.shift();
+    } else if (first.ended) {
+      strokes.shift();
+      const change = first.work.change();
+      if (change) push({ label: first.title, changes: [change] });
+    } else return;
   }
 }
 
@@ -187,7 +229,7 @@ async function touch(running: Running, request: Stroke): Promise<void> {
   try {
     const { side } = running.work;
     const { vertices } = await askEditor({ do: "paint_pick", side, camera: running.camera, ...request });
-    if (stroke !== running) return;
+    if (!strokes.includes(running)) return;
     running.work.paint(vertices, running.label);
     changed();
   } catch (error) {
@@ -195,40 +237,9 @@ async function touch(running: Running, request: Stroke): Promise<void> {
   }
 }
 
-/** The stroke becomes a command. */
-export async function endBrush(): Promise<void> {
-  const running = stroke;
-  if (!running) return;
-  while (running.asking) await running.asking;
-  if (stroke !== running) return;
-  finish(running);
-}
-
-function finish(running: Running): void {
-  stroke = null;
-  const change = running.work.change();
-  if (change) push({ label: running.title, changes: [change] });
-}
-
-/** Two fingers turn the view: what the first one painted was not meant. */
-export function abandon(): void {
-  stroke?.work.abandon();
-  stroke = null;
-  changed();
-}
-
-/** A stroke that is known at once. */
-export async function strokeAtOnce(
-  side: Side,
-  camera: PaintCamera,
-  request: Stroke,
-  erase: boolean,
-): Promise<void> {
-  if (stroke) return;
-  const running = begin(side, camera, erase);
-  stroke = running;
-  await touch(running, request);
-  if (stroke === running) finish(running);
+/** Resolves when every stroke has become a command. */
+export async function settled(): Promise<void> {
+  while (working) await working;
 }
 
 /* ---- pairs ---- */
@@ -253,7 +264,7 @@ export function rename(id: number, name: string): void {
 export function remove(id: number): void {
   const before = state.pairs.value;
   const name = before.find((pair) => pair.id === id)?.name;
-  if (name === undefined || stroke) return;
+  if (name === undefined || strokes.length > 0) return;
   const changes = work.SIDES.flatMap((side) => {
     const brush = new work.Brushwork(state.labels.value, side);
     brush.paint(work.verticesOf(state.labels.value, side, id), 0);
@@ -272,7 +283,7 @@ export function choose(step: number): void {
 
 /** Pairs of the body's segments, of what is not painted yet. @param only one of them */
 export async function suggest(only?: string): Promise<void> {
-  if (stroke) return;
+  await settled();
   try {
     const { names, scan, template } = await askEditor({ do: "paint_suggest" });
     const titles = names.map(displayName);
@@ -296,7 +307,7 @@ export function exportFile(): void {
 }
 
 export async function importFile(file: File): Promise<void> {
-  if (stroke) return;
+  await settled();
   try {
     const { regions } = await askEditor({ do: "import_regions", text: await file.text(), name: file.name });
     push(work.replaced(state.pairs.value, state.labels.value, regions, `From ${file.name}`));
