@@ -26,8 +26,8 @@ export function EditorPanel() {
     const onKeyDown = (event: KeyboardEvent) => {
       if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
       const { undo, redo } = state.tool.value === "paint" ? painting : editing;
-      if (event.key.toLowerCase() === "z") event.shiftKey ? redo() : undo();
-      else if (event.key.toLowerCase() === "y") redo();
+      if (event.key.toLowerCase() === "z") void (event.shiftKey ? redo() : undo());
+      else if (event.key.toLowerCase() === "y") void redo();
       else return;
       event.preventDefault();
     };

@@ -98,14 +98,19 @@ export function PaintPanel() {
         <button type="button" disabled={working} onClick={() => painting.addPair()}>
           Add region
         </button>
-        <button type="button" disabled={state.done.value.length === 0} title="Ctrl+Z" onClick={painting.undo}>
+        <button
+          type="button"
+          disabled={state.done.value.length === 0}
+          title="Ctrl+Z"
+          onClick={() => void painting.undo()}
+        >
           Undo
         </button>
         <button
           type="button"
           disabled={state.undone.value.length === 0}
           title="Ctrl+Shift+Z"
-          onClick={painting.redo}
+          onClick={() => void painting.redo()}
         >
           Redo
         </button>

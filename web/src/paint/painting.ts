@@ -34,9 +34,12 @@ function setPairs(pairs: readonly work.Pair[]): void {
   if (!pairs.some(({ id }) => id === state.selected.value)) state.selected.value = pairs.at(-1)?.id ?? 0;
 }
 
-export function undo(): void {
+/** The last stroke, once it is there. */
+export async function undo(): Promise<void> {
+  if (drawn) return;
+  await settled();
   const command = state.done.value.at(-1);
-  if (!command || strokes.length > 0) return;
+  if (!command) return;
   batch(() => {
     work.undo(state.labels.value, command);
     state.done.value = state.done.value.slice(0, -1);
@@ -46,9 +49,11 @@ export function undo(): void {
   });
 }
 
-export function redo(): void {
+export async function redo(): Promise<void> {
+  if (drawn) return;
+  await settled();
   const command = state.undone.value[0];
-  if (!command || strokes.length > 0) return;
+  if (!command) return;
   batch(() => {
     work.redo(state.labels.value, command);
     state.done.value = [...state.done.value, command];
