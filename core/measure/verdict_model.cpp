@@ -10,25 +10,25 @@ namespace vitruvian {
 namespace {
 
 /// Printed by scripts/verdict_study, in the order of VerdictInput. `usual`: mean of right registrations.
-constexpr double kBias = -10.8243, kConfidenceOfOk = 0.4785;
+constexpr double kBias = -9.6698, kConfidenceOfOk = 0.3802;
 struct Weight {
   double weight, usual;
 };
 constexpr std::array<Weight, kVerdictInputs> kWeights = {{
-    {1.1060, 0.3662},  // model_to_scan_p95
-    {0.3611, 0.3154},  // scan_to_model_p95
-    {1.6410, 0.9453},  // typical
-    {0.2693, 0.0303},  // unexplained
-    {0.0000, 0.2203},  // opposed
-    {0.9056, 0.3627},  // part_model_to_scan
-    {1.2089, 0.6018},  // uneven
-    {0.0000, 0.3235},  // part_scan_to_model
-    {0.9903, 0.2324},  // part_opposed
-    {0.0900, 0.5239},  // limb_misfit
-    {2.2203, 0.0267},  // joint_limits
-    {0.7941, 0.4351},  // disagreement
-    {0.6599, 1.1002},  // inside
-    {0.6361, 0.0029},  // lost_parts
+    {0.9893, 0.3778},  // model_to_scan_p95
+    {0.5405, 0.3205},  // scan_to_model_p95
+    {1.6997, 0.9483},  // typical
+    {0.3812, 0.0289},  // unexplained
+    {0.0219, 0.2372},  // opposed
+    {0.5575, 0.3987},  // part_model_to_scan
+    {0.7686, 0.6387},  // uneven
+    {0.2152, 0.3352},  // part_scan_to_model
+    {0.5109, 0.2536},  // part_opposed
+    {0.0000, 0.5340},  // limb_misfit
+    {2.7952, 0.0259},  // joint_limits
+    {0.4992, 0.4409},  // disagreement
+    {0.5564, 1.1165},  // inside
+    {0.6119, 0.0080},  // lost_parts
 }};
 
 double logarithm(double value, double unit) { return std::log1p(std::max(0.0, value) / unit); }

@@ -59,9 +59,7 @@ std::vector<JointFinding> keypoint_disagreement(const std::vector<LandmarkTarget
     if (l.weight < kSureKeypoint) continue;
     // Where a part was not scanned the detector guessed as the fit did; the segments are in joint order.
     const std::size_t s = static_cast<std::size_t>(l.joint);
-    if (s < features.observed_share.size() && features.observed_share[s] < kObservedShare &&
-        features.observed_share[s] + features.unseen_share[s] >= kObservedShare)
-      continue;
+    if (s < features.observed_share.size() && features.observed_share[s] < kObservedShare) continue;
     const double distance = (landmark_position(skeleton, l) - l.target).norm();
     const std::string& name = body.joint_names[l.joint];
     // A wrist has landmarks on the fingers too: the worst speaks for it.

@@ -8,6 +8,8 @@ from statistics import median
 import numpy as np
 from scipy.optimize import minimize
 
+from .measures import SMPL
+
 SEEN = 0.5  # share of a segment's vertices that meets the scan, or lies over a hole of it
 FREE = ("typical",)  # clothes excuse some distance: more of it may speak for a fit
 PENALTY = 5e-2  # ridge, of standardised weights
@@ -22,6 +24,8 @@ def inputs(features):
     parts = features["segments"]
     met = [p for p in parts if p["observed"] >= SEEN * (1 - p["unseen"])]
     lost = sum(p["observed"] + p["unseen"] < SEEN for p in parts)
+    # Where a part was not met by the scan the detector guessed as the fit did.
+    seen = {name for name, part in zip(SMPL, parts) if part["observed"] >= SEEN}
     worst = lambda key: max((p[key] for p in met), default=0.0)
     return {
         "model_to_scan_p95": _log(features["model_to_scan_p95_mm"], 5),
@@ -35,7 +39,7 @@ def inputs(features):
         "part_opposed": _log(worst("opposed_share"), 0.1),
         "limb_misfit": _log(max(features["limb_misfit"].values()), 1),
         "joint_limits": _log(max(features["joint_limit_excess_rad"].values(), default=0), 0.2),
-        "disagreement": _log(max(features["keypoint_disagreement_m"].values(), default=0), 0.1),
+        "disagreement": _log(max((value for joint, value in features["keypoint_disagreement_m"].items() if joint in seen), default=0), 0.1),
         "inside": _log(features["inside_share"], 0.01),
         "lost_parts": _log(lost, 1),
     }
