@@ -1,6 +1,13 @@
 // What a person does in the editor, with the mouse of a real browser.
+import { spawnSync } from "node:child_process";
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import type { BrowserContext, Page } from "playwright-core";
-import { downloaded, PATIENCE_MS } from "./harness";
+import { expect } from "vitest";
+import type { Registration } from "../src/core/types";
+import { downloaded, PATIENCE_MS, pick, root } from "./harness";
+
+const CLI = `${root}/build/native/vitruvian`;
 
 type Point = readonly [number, number];
 export type Places = Record<string, readonly [number, number, number]>;
@@ -93,4 +100,48 @@ export class FlatView {
 /** Right and up in a pane. */
 function flat(pane: FlatPane, [x, y, z]: Places[string]): Point {
   return pane === "front" ? [x, y] : [-z, y];
+}
+
+export async function result(page: Page): Promise<Registration> {
+  return JSON.parse((await downloaded(page, "registration.json")).toString());
+}
+
+export async function open(page: Page, folder: string, name: string, scan: Buffer): Promise<string> {
+  const file = join(folder, name);
+  writeFileSync(file, scan);
+  await pick(page, file);
+  await page.getByText("Vertices", { exact: true }).waitFor({ timeout: PATIENCE_MS });
+  return file;
+}
+
+/** registration.json of a replay on the command line. */
+export function replayed(
+  scan: string,
+  project: string,
+  out: string,
+): { text: string; registration: Registration } {
+  const { status, stderr } = spawnSync(CLI, [
+    "register",
+    scan,
+    "--out",
+    out,
+    "--quiet",
+    "--project",
+    project,
+  ]);
+  expect(status, String(stderr)).toBe(0);
+  const stem = scan
+    .split("/")
+    .at(-1)!
+    .replace(/\.ply$/, "");
+  const text = readFileSync(join(out, stem, "registration.json"), "utf8");
+  return { text, registration: JSON.parse(text) };
+}
+
+/** Largest distance of joints, mm. */
+export function apart(a: Registration, b: Registration): number {
+  const distances = a.joints.map(({ scan }, i) =>
+    Math.hypot(...b.joints[i]!.scan.map((value, k) => value - scan[k]!)),
+  );
+  return Math.max(...distances) * 1000 * a.scan.metres_per_unit;
 }

@@ -1,4 +1,3 @@
-import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -6,19 +5,21 @@ import type { Page } from "playwright-core";
 import { describe, expect } from "vitest";
 import type { Registration } from "../src/core/types";
 import {
+  apart,
   choose,
   drag,
   editJoints,
   exportedJoints,
   FlatView,
+  open,
   type Places,
+  replayed,
+  result,
   touch,
   transformed,
 } from "./editing";
-import { downloaded, PATIENCE_MS, pick, root, test, verdict } from "./harness";
+import { downloaded, PATIENCE_MS, root, test, verdict } from "./harness";
 import { noisy, scanOfModel, twoPeople } from "./scans";
-
-const CLI = `${root}/build/native/vitruvian`;
 
 /** Sitting with the arms crossed before the chest: 24 joints, axis-angle. */
 const ARMS_CROSSED = [
@@ -29,18 +30,6 @@ const ARMS_CROSSED = [
 ];
 /** What a hand that means to hit a place misses it by. */
 const HAND_M = 0.02;
-
-async function result(page: Page): Promise<Registration> {
-  return JSON.parse((await downloaded(page, "registration.json")).toString());
-}
-
-async function open(page: Page, folder: string, name: string, scan: Buffer): Promise<string> {
-  const file = join(folder, name);
-  writeFileSync(file, scan);
-  await pick(page, file);
-  await page.getByText("Vertices", { exact: true }).waitFor({ timeout: PATIENCE_MS });
-  return file;
-}
 
 async function registerEdited(page: Page): Promise<Registration> {
   await page.getByRole("button", { name: "Register with these edits" }).click();
@@ -55,34 +44,6 @@ async function savedProject(page: Page, folder: string): Promise<string> {
   const file = join(folder, "saved.project.json");
   writeFileSync(file, await downloaded(page, "Save project"));
   return file;
-}
-
-/** registration.json of a replay on the command line. */
-function replayed(scan: string, project: string, out: string): { text: string; registration: Registration } {
-  const { status, stderr } = spawnSync(CLI, [
-    "register",
-    scan,
-    "--out",
-    out,
-    "--quiet",
-    "--project",
-    project,
-  ]);
-  expect(status, String(stderr)).toBe(0);
-  const stem = scan
-    .split("/")
-    .at(-1)!
-    .replace(/\.ply$/, "");
-  const text = readFileSync(join(out, stem, "registration.json"), "utf8");
-  return { text, registration: JSON.parse(text) };
-}
-
-/** Largest distance of joints, mm. */
-function apart(a: Registration, b: Registration): number {
-  const distances = a.joints.map(({ scan }, i) =>
-    Math.hypot(...b.joints[i]!.scan.map((value, k) => value - scan[k]!)),
-  );
-  return Math.max(...distances) * 1000 * a.scan.metres_per_unit;
 }
 
 function distance(a: Places[string], b: Places[string]): number {

@@ -91,3 +91,63 @@ export function scanOfModel(
   const { joints } = JSON.parse(readFileSync(join(folder, "body_000.truth.json"), "utf8"));
   return { scan: readFileSync(join(folder, "body_000.ply")), joints };
 }
+
+/** The surface with all vertices of a cell of a grid in one: what touches grows together. @param cell file's unit */
+export function merged(file: Buffer, cell: number): Buffer {
+  const { vertices, faces, points, stride, triangles } = readPly(file);
+  const place = (i: number) => [0, 4, 8].map((at) => points.readFloatLE(stride * i + at));
+  const cells = new Map<string, number>();
+  const group: number[] = [];
+  const sums: number[][] = [];
+  for (let i = 0; i < vertices; ++i) {
+    const at = place(i);
+    const key = at.map((value) => Math.floor(value / cell)).join();
+    const own = cells.get(key) ?? cells.size;
+    if (own === cells.size) {
+      cells.set(key, own);
+      sums.push([0, 0, 0, 0]);
+    }
+    group.push(own);
+    [...at, 1].forEach((value, k) => {
+      sums[own]![k]! += value;
+    });
+  }
+  const kept = new Map<string, number[]>();
+  for (let i = 0; i < faces; ++i) {
+    const face = [1, 5, 9].map((at) => group[triangles.readInt32LE(13 * i + at)]!);
+    if (new Set(face).size === 3) kept.set([...face].sort((a, b) => a - b).join(), face);
+  }
+  const header = [
+    "ply",
+    "format binary_little_endian 1.0",
+    `element vertex ${sums.length}`,
+    ...["x", "y", "z"].map((axis) => `property float ${axis}`),
+    `element face ${kept.size}`,
+    "property list uchar int vertex_indices",
+    "end_header\n",
+  ].join("\n");
+  const corners = Buffer.alloc(12 * sums.length);
+  sums.forEach(([x, y, z, count], i) => {
+    [x!, y!, z!].forEach((sum, k) => {
+      corners.writeFloatLE(sum / count!, 12 * i + 4 * k);
+    });
+  });
+  const rows = Buffer.alloc(13 * kept.size);
+  [...kept.values()].forEach((face, i) => {
+    rows.writeUInt8(3, 13 * i);
+    face.forEach((corner, k) => {
+      rows.writeInt32LE(corner, 13 * i + 1 + 4 * k);
+    });
+  });
+  return Buffer.concat([Buffer.from(header), corners, rows]);
+}
+
+/** Places of a PLY's vertices. */
+export function placesOf(file: Buffer): [number, number, number][] {
+  const { vertices, points, stride } = readPly(file);
+  return Array.from({ length: vertices }, (_, i) => [
+    points.readFloatLE(stride * i),
+    points.readFloatLE(stride * i + 4),
+    points.readFloatLE(stride * i + 8),
+  ]);
+}
