@@ -4,6 +4,7 @@ import { explain } from "../core/explain";
 import type { Gender } from "../core/types";
 import { displayName } from "../result/format";
 import { Choice } from "../ui/Choice";
+import { Model } from "./formulas";
 import * as posing from "./posing";
 import { PLAIN_VIEW, Scene } from "./Scene";
 import "./teach.css";
@@ -66,12 +67,10 @@ function Sliders() {
     <>
       <p class="quiet">
         Every registered body is this mesh under some numbers: shape components β that say how people differ,
-        and one turn θ for each joint. Its vertices are{" "}
-        <span class="formula">
-          M(β, θ) = W(T + B<sub>S</sub>(β) + B<sub>P</sub>(θ), J(β), θ)
-        </span>
-        : a mean body, changed in shape, corrected for the pose, and bent at its joints.
+        and one turn θ for each joint. Its vertices are a mean body T, changed in shape, corrected for the
+        pose, and bent (W) at its joints J:
       </p>
+      <Model />
       <Choice
         label="Population"
         value={posing.gender.value}

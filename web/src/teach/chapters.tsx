@@ -6,6 +6,7 @@ import { Choice } from "../ui/Choice";
 import { viewCount } from "../ui/MethodChoice";
 import { ViewPicture } from "../ui/panels/KeypointsPanel";
 import * as page from "../ui/state";
+import * as formulas from "./formulas";
 import * as lesson from "./lesson";
 import { Plot, type Series } from "./Plot";
 
@@ -25,10 +26,6 @@ function Section({ paper, children }: { paper: string; children: ComponentChildr
       <p class="quiet">In the paper: section {paper}.</p>
     </>
   );
-}
-
-function Formula({ children }: { children: ComponentChildren }) {
-  return <p class="formula formula-block">{children}</p>;
 }
 
 /** Runs the lesson when its chapter is opened without one. */
@@ -69,9 +66,7 @@ function Align() {
           A file has axes and units of its own. First it is stood up: one rotation R, the centroid c, and the
           factor s to metres take every point p of the scan into the body’s frame.
         </p>
-        <Formula>
-          p<sub>body</sub> = s R (p − c)
-        </Formula>
+        <formulas.Placement />
         <p>
           The paper takes R from the main directions of the points (PCA). Sitting or reaching bodies break
           that; here pictures from six sides tell what is up, and what is seen in them tells what is front.
@@ -122,11 +117,9 @@ function See() {
         <p>
           The scan is drawn from several sides, and a network made for photographs finds 33 landmarks in each
           picture. A landmark x in space is where the lines of sight from all pictures meet best, each picture
-          i counting with its confidence w<sub>i</sub>:
+          i counting with its confidence <formulas.Named of="w" at="i" />:
         </p>
-        <Formula>
-          x* = argmin Σ<sub>i</sub> w<sub>i</sub> ρ(|π<sub>i</sub>(x) − u<sub>i</sub>|)
-        </Formula>
+        <formulas.Triangulation />
         <p>ρ lets single wrong sightings count little. Two views leave nothing to outvote them.</p>
       </Section>
       <Choice
@@ -175,14 +168,11 @@ function Pose() {
     <>
       <Section paper="3.1.4">
         <p>
-          Which pose puts the body’s own landmarks l<sub>k</sub>(β, θ) where they were seen, and is one that
-          people take? The second term is small for poses like those of recorded people, the third for usual
-          shapes.
+          Which pose puts the body’s own landmarks <formulas.Named of="l" at="k" /> where they were seen, and
+          is one that people take? The second term is small for poses like those of recorded people, the third
+          for usual shapes.
         </p>
-        <Formula>
-          E = Σ<sub>k</sub> w<sub>k</sub> ρ(|l<sub>k</sub>(β, θ) − x<sub>k</sub>|) + λ<sub>θ</sub> E
-          <sub>pose</sub>(θ) + λ<sub>β</sub> E<sub>shape</sub>(β)
-        </Formula>
+        <formulas.LandmarkEnergy />
       </Section>
       <label class="slider with-figure">
         <span>Play: keypoint noise</span>
@@ -256,10 +246,7 @@ function Fit() {
           each scan point to the nearest body point, along the surface’s normal n; far pairs count little, and
           less and less far ones count at all.
         </p>
-        <Formula>
-          E = Σ<sub>v→s</sub> ρ(n·(v − s)) + Σ<sub>s→v</sub> ρ(n·(v − s)) + λ<sub>θ</sub> E<sub>pose</sub> + λ
-          <sub>β</sub> E<sub>shape</sub>
-        </Formula>
+        <formulas.SurfaceEnergy />
         <p class="quiet">
           This is one start of the fit. A registration also looks for misplaced limbs, tries other starts, and
           refines.
@@ -350,9 +337,7 @@ function Judge() {
           What is left is the distance of each of the body’s vertices to the scan. A right fit has one narrow
           hill near zero; a limb in the wrong place is a long tail, which a mean hides.
         </p>
-        <Formula>
-          r<sub>v</sub> = |n·(v − s(v))|
-        </Formula>
+        <formulas.Residual />
         <p>
           The verdict of a registration rests on such residuals both ways, by body part, with coverage, joint
           limits and agreement with the keypoints.
