@@ -11,6 +11,9 @@ describe("the method", () => {
     await page.getByRole("button", { name: "4. Fit it" }).click();
     await page.getByRole("button", { name: "Fit", exact: true }).click();
     await page.getByText("Nothing is changed").waitFor({ timeout: PATIENCE_MS });
+    // Formulas for eyes and screen readers: MathML.
+    expect(await page.getByRole("math").allInnerTexts()).toHaveLength(1);
+    expect(await page.locator("math munder").count()).toBe(2);
     const film = page.getByLabel("Iteration", { exact: true });
     expect(await film.inputValue()).toBe("36");
     const marked = () => page.locator(".plot path[stroke-dasharray]").first().getAttribute("d");
@@ -32,11 +35,9 @@ describe("the method", () => {
     await page.getByRole("button", { name: "5. Judge" }).click();
     const png = page.waitForEvent("download");
     await page.getByRole("button", { name: "Vertices by distance to the scan, as PNG" }).click();
-    expect(
-      readFileSync(await (await png).path())
-        .subarray(1, 4)
-        .toString(),
-    ).toBe("PNG");
+    const picture = readFileSync(await (await png).path());
+    expect(picture.subarray(1, 4).toString()).toBe("PNG");
+    expect([picture.readUInt32BE(16), picture.readUInt32BE(20)]).toEqual([1200, 450]);
     await page.getByRole("button", { name: "3. Pose a body" }).click();
     await page.getByText("uses no keypoints").waitFor();
   });

@@ -55,9 +55,9 @@ function Call({ f, children }: { f: ComponentChildren } & Children) {
   return (
     <mrow>
       {f}
-      <mo stretchy={false}>(</mo>
+      <mo stretchy="false">(</mo>
       {children}
-      <mo stretchy={false}>)</mo>
+      <mo stretchy="false">)</mo>
     </mrow>
   );
 }
@@ -70,9 +70,9 @@ function list(...names: string[]): ComponentChildren {
 function Size({ children }: Children) {
   return (
     <mrow>
-      <mo stretchy={false}>|</mo>
+      <mo stretchy="false">|</mo>
       {children}
-      <mo stretchy={false}>|</mo>
+      <mo stretchy="false">|</mo>
     </mrow>
   );
 }
@@ -92,11 +92,11 @@ function AlongNormal({ s = <mi>s</mi> }: { s?: ComponentChildren }) {
     <mrow>
       <mi mathvariant="normal">n</mi>
       <mo>·</mo>
-      <mo stretchy={false}>(</mo>
+      <mo stretchy="false">(</mo>
       <mi>v</mi>
       <mo>−</mo>
       {s}
-      <mo stretchy={false}>)</mo>
+      <mo stretchy="false">)</mo>
     </mrow>
   );
 }
