@@ -1,6 +1,9 @@
 // The method's formulas in MathML: drawn by the browser, read aloud by screen readers.
 import type { ComponentChildren } from "preact";
 
+/** Brackets and bars of the text's own height. As a word: the value false would leave the attribute out. */
+const RIGID = { stretchy: "false" as unknown as boolean };
+
 type Children = { children: ComponentChildren };
 
 /** A formula in a line of its own. */
@@ -55,9 +58,9 @@ function Call({ f, children }: { f: ComponentChildren } & Children) {
   return (
     <mrow>
       {f}
-      <mo stretchy="false">(</mo>
+      <mo {...RIGID}>(</mo>
       {children}
-      <mo stretchy="false">)</mo>
+      <mo {...RIGID}>)</mo>
     </mrow>
   );
 }
@@ -70,9 +73,9 @@ function list(...names: string[]): ComponentChildren {
 function Size({ children }: Children) {
   return (
     <mrow>
-      <mo stretchy="false">|</mo>
+      <mo {...RIGID}>|</mo>
       {children}
-      <mo stretchy="false">|</mo>
+      <mo {...RIGID}>|</mo>
     </mrow>
   );
 }
@@ -92,11 +95,11 @@ function AlongNormal({ s = <mi>s</mi> }: { s?: ComponentChildren }) {
     <mrow>
       <mi mathvariant="normal">n</mi>
       <mo>·</mo>
-      <mo stretchy="false">(</mo>
+      <mo {...RIGID}>(</mo>
       <mi>v</mi>
       <mo>−</mo>
       {s}
-      <mo stretchy="false">)</mo>
+      <mo {...RIGID}>)</mo>
     </mrow>
   );
 }
