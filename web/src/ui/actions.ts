@@ -84,12 +84,16 @@ function dropAll(): void {
   });
 }
 
-/** Settings on their way to the core: short, so that what is asked for meanwhile waits instead of being dropped. */
+/** Settings on their way to the core, and what they ask for at once: short, so that what is asked for meanwhile waits. */
 let settling: Promise<void> = Promise.resolve();
 
-/** Runs `work` as the stage's; keeps busy, progress and problem right. */
+/** Runs `work` as the stage's, after settings that are on their way; keeps busy, progress and problem right. */
 async function working(stage: Stage, work: () => Promise<void>): Promise<void> {
   await settling;
+  await occupied(stage, work);
+}
+
+async function occupied(stage: Stage, work: () => Promise<void>): Promise<void> {
   if (state.busy.value) return;
   batch(() => {
     state.busy.value = { stage, since: performance.now() };
@@ -153,18 +157,19 @@ export async function openSample(): Promise<void> {
 
 /** Works the opened scan up to a stage, and shows it. What is there already is not worked again, but for the stage itself. */
 export async function run(until: CoreStage, show: Stage = until): Promise<void> {
-  if (!state.scan.value) return;
-  await working(until, async () => {
-    await ensureScan();
-    const again = state.found.value[until] !== null;
-    if (again) keep(kCoreStages.slice(0, kCoreStages.indexOf(until)));
-    energy.clear();
-    const found = await client.call("run", { until, again });
-    batch(() => {
-      state.found.value = found;
-      state.stale.value = new Set([...state.stale.value].filter((name) => !found[name]));
-      state.stage.value = show;
-    });
+  if (state.scan.value) await working(until, () => workUp(until, show));
+}
+
+async function workUp(until: CoreStage, show: Stage): Promise<void> {
+  await ensureScan();
+  const again = state.found.value[until] !== null;
+  if (again) keep(kCoreStages.slice(0, kCoreStages.indexOf(until)));
+  energy.clear();
+  const found = await client.call("run", { until, again });
+  batch(() => {
+    state.found.value = found;
+    state.stale.value = new Set([...state.stale.value].filter((name) => !found[name]));
+    state.stage.value = show;
   });
 }
 
@@ -238,9 +243,14 @@ export async function change(settings: Partial<Settings>): Promise<void> {
   state.settings.value = { ...state.settings.value, ...settings };
   if (!scanIsInCore) return;
   const aligned = state.found.value.align !== null;
-  settling = working(state.stage.value, configure);
+  const stage = state.stage.value;
+  settling = settling.then(async () => {
+    await occupied(stage, configure);
+    if (aligned && !state.found.value.align && !state.problem.value) {
+      await occupied("align", () => workUp("align", state.stage.value));
+    }
+  });
   await settling;
-  if (aligned && !state.found.value.align && !state.problem.value) await run("align", state.stage.value);
 }
 
 const MESH_FORMATS = ["ply", "obj", "glb"] as const;
