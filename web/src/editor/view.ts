@@ -1,10 +1,7 @@
 // The editor's scene in three panes over one canvas. World frame: the body frame (metres, Y up).
 import {
-  AmbientLight,
   Box3,
-  DirectionalLight,
   Group,
-  HemisphereLight,
   Matrix4,
   type Mesh,
   type MeshLambertMaterial,
@@ -16,6 +13,7 @@ import {
 } from "three";
 import type { Matrix, Mesh as MeshData, Vec3 } from "../core/types";
 import { columnMajor } from "../result/transform";
+import { workLights } from "../viewer/lights";
 import { bodyObject, clear, scanObject } from "../viewer/parts";
 import { JointsObject, type ShownJoint } from "./joints_object";
 import { Pane, type PaneName } from "./panes";
@@ -60,19 +58,7 @@ export class EditorView {
     this.renderer.setScissorTest(true);
     this.renderer.debug.checkShaderErrors = false;
     this.scanRoot.matrixAutoUpdate = false;
-    const key = new DirectionalLight(0xffffff, 1.2);
-    key.position.set(1, 1, 1);
-    const fill = new DirectionalLight(0xffffff, 0.6);
-    fill.position.set(-1, 0.4, -1);
-    this.scene.add(
-      key,
-      fill,
-      new AmbientLight(0xffffff, 0.7),
-      new HemisphereLight(0xffffff, 0x777788, 1),
-      this.scanRoot,
-      this.bodyRoot,
-      this.joints.root,
-    );
+    this.scene.add(...workLights(), this.scanRoot, this.bodyRoot, this.joints.root);
     this.panes = (["front", "side", "free"] as const).map(
       (name) => new Pane(name, elements[name], () => this.request(name)),
     );

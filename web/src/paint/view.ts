@@ -1,12 +1,9 @@
 // Scan and template side by side, in the colours of their regions. World frame: the body frame (metres, Y up).
 import {
-  AmbientLight,
   Box3,
   BufferAttribute,
   Color,
-  DirectionalLight,
   Group,
-  HemisphereLight,
   Matrix4,
   type Mesh,
   type MeshLambertMaterial,
@@ -23,6 +20,7 @@ import type { Matrix, Vec3 } from "../core/types";
 import { rowsOf } from "../editor/handles";
 import { Pane } from "../editor/panes";
 import { columnMajor } from "../result/transform";
+import { workLights } from "../viewer/lights";
 import { clear, scanObject } from "../viewer/parts";
 import { colourOf, SIDES } from "./labels";
 import type { PaintCamera, PaintMesh, Side } from "./requests";
@@ -51,17 +49,7 @@ class Half {
     changed: () => void,
   ) {
     this.root.matrixAutoUpdate = false;
-    const key = new DirectionalLight(0xffffff, 1.2);
-    key.position.set(1, 1, 1);
-    const fill = new DirectionalLight(0xffffff, 0.6);
-    fill.position.set(-1, 0.4, -1);
-    this.scene.add(
-      key,
-      fill,
-      new AmbientLight(0xffffff, 0.7),
-      new HemisphereLight(0xffffff, 0x777788, 1),
-      this.root,
-    );
+    this.scene.add(...workLights(), this.root);
     this.pane = new Pane("free", element, changed);
   }
 
